@@ -1,0 +1,58 @@
+# Everything the book needs, in two commands:  make book  ·  make test
+# Needed beforehand: Python 3.11 or newer, pip, make. The rest comes into .tools, .venv and node_modules.
+
+PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && echo $$p && break; done)
+
+UV  := .tools/uv/bin/uv
+BIN := .venv/bin
+RUN := $(BIN)/python
+
+# A stamp carries a checksum of what it was made from, so that a changed lock, not a changed date, starts the work again.
+sum = $(shell cat $(1) | cksum | tr ' ' '-')
+UV_READY   := .tools/uv/ready-$(call sum,requirements/bootstrap.lock)
+VENV_READY := .venv/ready-$(call sum,requirements/dev.lock pyproject.toml)
+NODE_READY := node_modules/.ready-$(call sum,package-lock.json)
+
+# uv trusts the certificates that the machine trusts, and takes the Python found above.
+export UV_SYSTEM_CERTS := 1
+export UV_PYTHON_DOWNLOADS := never
+export UV_NO_CONFIG := 1
+
+.PHONY: help book serve test lint exercises lock venv clean distclean
+.DELETE_ON_ERROR:
+
+help:
+	@echo 'make book       build the book into _build/html and print its address'
+	@echo 'make test       lint, types and all tests'
+	@echo 'make serve      build the book, serve it on this machine and open it'
+	@echo 'make lint       lint and types only'
+	@echo 'make exercises  derive the student notebooks from the solutions'
+	@echo 'make lock       pin the newest versions (needs the network)'
+	@echo 'make clean      remove what was built; make distclean: the tools too'
+
+venv: $(VENV_READY)
+
+$(UV_READY): requirements/bootstrap.lock
+	@test -n '$(PYTHON)' || { echo 'Python 3.11 or newer is needed: install it, or name it: make PYTHON=/path/to/python'; exit 1; }
+	@$(PYTHON) -m pip --version >/dev/null 2>&1 || { echo '$(PYTHON) has no pip: install it (Debian: apt install python3-pip), or name another: make PYTHON=…'; exit 1; }
+	@echo '── uv, by pip ──'
+	@rm -rf .tools/uv
+	$(PYTHON) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes --target .tools/uv -r requirements/bootstrap.lock
+	@touch $@
+
+$(VENV_READY): $(UV_READY) requirements/dev.lock pyproject.toml
+	@echo '── the locked environment, in .venv ──'
+	@$(RUN) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
+		$(UV) venv --clear --python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" .venv
+	$(UV) pip sync --python .venv --require-hashes requirements/dev.lock
+	$(UV) pip install --python .venv --quiet --no-deps --no-build-isolation --editable .
+	@rm -f .venv/ready-* && touch $@
+
+# Locks hold hashes and no addresses: any mirror of the package index serves.
+COMPILE := UV_CUSTOM_COMPILE_COMMAND='make lock' $(UV) pip compile --quiet --universal --python-version 3.11 \
+	--generate-hashes --no-emit-index-url --no-annotate --upgrade
+lock: $(UV_READY)
+	$(COMPILE) --group bootstrap -o requirements/bootstrap.lock
+	$(COMPILE) --group node -o requirements/node.lock
+	$(COMPILE) pyproject.toml --all-extras --group dev -o requirements/dev.lock
