@@ -84,9 +84,8 @@ class Chain:
         **unknown: Any,
     ) -> None:
         if unknown:
-            raise DHError(
-                f"Chain(…) has no argument {next(iter(unknown))!r}; it takes joints, convention, base, tool, name, unit."
-            )
+            known = "joints, convention, base, tool, name, unit"
+            raise DHError(f"Chain(…) has no argument {next(iter(unknown))!r}; it takes {known}.")
         if not convention:
             raise DHError("Chain(…) needs convention='classic' or convention='modified': a table alone does not say.")
         self.convention = read_convention(convention)
@@ -318,9 +317,11 @@ class Chain:
         """
         q = self._read_q(q)
         if isinstance(q, list):
-            symbolic = self._needs_symbols(q)
-            _, end = _last(walk(self._exact_screws(q) if symbolic else self._screws(q)))
-            return self._between_ends(matrix(to_rows(end)), symbolic)
+            if self._needs_symbols(q):
+                _, end = _last(walk(self._exact_screws(q)))
+                return _exact_matrix(self._prefix) * matrix(to_rows(end)) * _exact_matrix(self.tool)
+            _, end = _last(walk(self._screws(q)))
+            return self._between_ends(np.array(to_rows(end), dtype=np.float64) + 0.0)
         rows = q.reshape(-1, self.n)
         poses = np.empty((len(rows), 4, 4))
         for start in range(0, len(rows), CHUNK):
@@ -356,8 +357,8 @@ class Chain:
         mine = 1 if self.convention == "classic" else 0  # frame i stands after X_i, or after Z_i
         if self._needs_symbols(q):
             prefix = _exact_matrix(self._prefix)
-            poses = [prefix * matrix(to_rows(pair[mine])) for pair in walk(self._exact_screws(q))]
-            return [_exact_matrix(self.base), *poses]
+            moved = [prefix * matrix(to_rows(pair[mine])) for pair in walk(self._exact_screws(q))]
+            return [_exact_matrix(self.base), *moved]
         q = np.asarray(q)
         rows = q.reshape(-1, self.n)
         poses = np.empty((len(rows), self.n + 1, 4, 4))
@@ -539,10 +540,8 @@ class Chain:
             theta, d = (varied, joint.d) if joint.kind == "R" else (joint.theta, varied)
             yield (*cos_sin(theta), d), (*cos_sin(exact(alpha, angle=True)), exact(a))
 
-    def _between_ends(self, poses: Pose, symbolic: bool = False) -> Pose:
-        """prefix · poses · tool, leaving out what is the identity."""
-        if symbolic:
-            return _exact_matrix(self._prefix) * poses * _exact_matrix(self.tool)
+    def _between_ends(self, poses: Pose) -> Pose:
+        """Put poses between the prefix and the tool, leaving out what is the identity."""
         if not self._prefix_is_identity:
             poses = self._prefix @ poses
         if not self._tool_is_identity:
@@ -646,6 +645,6 @@ def _exact_matrix(pose: Pose) -> Pose:
 
 def _last(items: Iterable[tuple[Columns, Columns]]) -> tuple[Columns, Columns]:
     """The last of at least one item."""
-    for item in items:
-        pass
-    return item
+    for pair in items:
+        last = pair
+    return last

@@ -74,12 +74,12 @@ class Joint:
 
     @property
     def theta(self) -> Scalar:
-        """θ at q = 0."""
+        """Joint angle θ at q = 0."""
         return self.offset if self.kind == "R" else self.constant
 
     @property
     def d(self) -> Scalar:
-        """d at q = 0."""
+        """Link offset d at q = 0."""
         return self.constant if self.kind == "R" else self.offset
 
 

@@ -150,8 +150,8 @@ def cos_sin(angle: Scalar) -> tuple[Scalar, Scalar]:
         cosine[np.abs(cosine) < ROUNDING] = 0.0
         sine[np.abs(sine) < ROUNDING] = 0.0
         return cosine, sine
-    cosine, sine = math.cos(angle), math.sin(angle)
-    return (0.0 if -ROUNDING < cosine < ROUNDING else cosine, 0.0 if -ROUNDING < sine < ROUNDING else sine)
+    c, s = math.cos(angle), math.sin(angle)
+    return (0.0 if -ROUNDING < c < ROUNDING else c, 0.0 if -ROUNDING < s < ROUNDING else s)
 
 
 def turn_by_quarters(cosine: Scalar, sine: Scalar, quarters: int) -> tuple[Scalar, Scalar]:

@@ -84,9 +84,16 @@ def _turned(rows: list[list[sympy.Expr]], first: int, second: int, angle: sympy.
     """The rows after a rotation from the left that mixes two of them."""
     c, s = sympy.cos(angle), sympy.sin(angle)
     turned = [list(row) for row in rows]
-    turned[first] = [c * x - s * y for x, y in zip(rows[first], rows[second], strict=True)]
-    turned[second] = [s * x + c * y for x, y in zip(rows[first], rows[second], strict=True)]
+    turned[first] = [_times(c, x) - _times(s, y) for x, y in zip(rows[first], rows[second], strict=True)]
+    turned[second] = [_times(s, x) + _times(c, y) for x, y in zip(rows[first], rows[second], strict=True)]
     return turned
+
+
+def _times(factor: sympy.Expr, entry: sympy.Expr) -> sympy.Expr:
+    """Multiply, with the minus sign of a sum drawn out: C1 (-S4 - C4) becomes -C1 (S4 + C4)."""
+    if entry.is_Add and factor.is_Function and entry.could_extract_minus_sign():
+        return -(factor * -entry)
+    return factor * entry
 
 
 def short_names(expression: Any) -> dict[sympy.Expr, sympy.Symbol]:

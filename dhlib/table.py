@@ -1,4 +1,4 @@
-"""Reading DH tables as people write them: lists, arrays, data frames; numbers, symbols and text such as ``q1 + pi/2``."""
+"""Reading DH tables as people write them: lists, arrays, data frames; numbers, symbols, text."""
 
 from __future__ import annotations
 
@@ -71,7 +71,8 @@ def _read_row(row: dict[str, Any], i: int, letter: str, degrees: bool) -> Joint:
         values[name] = _in_radians(rest, cell, degrees) if angle else rest
     if len(signs) == 2:
         raise DHError(
-            f"row {i}: both theta and d are variable; exactly one of them is: theta of a revolute joint, d of a prismatic one."
+            f"row {i}: both theta and d are variable; exactly one should be: "
+            "theta of a revolute joint, d of a prismatic one."
         )
     kind = {"theta": "R", "d": "P"}[next(iter(signs))] if signs else letter
     if not kind:
@@ -126,7 +127,8 @@ def _split_variable(value: Scalar, i: int) -> tuple[int, Scalar]:
     rest = value - sign * variable
     if sign not in (1, -1) or rest.has(variable):
         raise DHError(
-            f"row {i}: {value} is no joint variable; it should be {variable}, -{variable}, or one of these plus a constant."
+            f"row {i}: {value} is no joint variable; it should be {variable} or -{variable}, "
+            "with a constant added at most."
         )
     return int(sign), rest if rest.free_symbols else float(rest)
 
