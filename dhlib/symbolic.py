@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import sympy
 
-from dhlib.chain import Chain
+from dhlib.chain import CHUNK, Chain
 from dhlib.scalars import exact, quarter_turns
 from dhlib.transforms import Pose
 
@@ -90,8 +90,8 @@ def _turned(rows: list[list[sympy.Expr]], first: int, second: int, angle: sympy.
 
 
 def _times(factor: sympy.Expr, entry: sympy.Expr) -> sympy.Expr:
-    """Multiply, with the minus sign of a sum drawn out: C1 (-S4 - C4) becomes -C1 (S4 + C4)."""
-    if entry.is_Add and factor.is_Function and entry.could_extract_minus_sign():
+    """Multiply, with the sign of an all-negative sum drawn out: C1 (-S4 - C4) becomes -C1 (S4 + C4)."""
+    if factor.is_Function and entry.is_Add and all(term.as_coeff_Mul()[0].is_negative for term in entry.args):
         return -(factor * -entry)
     return factor * entry
 
@@ -131,11 +131,16 @@ def compile_chain(chain: Chain) -> Callable[[Any], Pose]:
     identity = np.eye(4)
 
     def fk(q: Any) -> Pose:
-        values = np.asarray(q, dtype=float) * signs + offsets
-        poses = np.zeros((*values.shape[:-1], 4, 4))
-        for k, entry in enumerate(entries(*np.moveaxis(values, -1, 0))):
-            poses[..., k // 4, k % 4] = entry
-        poses[..., 3, 3] = 1.0
+        values = np.asarray(q, dtype=float)
+        rows = values.reshape(-1, chain.n)
+        poses = np.zeros((len(rows), 4, 4))
+        for start in range(0, len(rows), CHUNK):
+            piece = np.ascontiguousarray((rows[start : start + CHUNK] * signs + offsets).T)
+            out = poses[start : start + CHUNK]
+            for k, entry in enumerate(entries(*piece)):
+                out[:, k // 4, k % 4] = entry
+        poses[:, 3, 3] = 1.0
+        poses = poses.reshape(*values.shape[:-1], 4, 4)
         if not np.array_equal(base, identity):
             poses = base @ poses
         return poses if np.array_equal(tool, identity) else poses @ tool
