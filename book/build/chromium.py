@@ -1,6 +1,7 @@
 """Find Chromium for the browser tests, or get it where that needs no question.
 
-Printed is its path. Where there is none and it cannot be had, a line says how to get it; with ``CI=true`` that is an error.
+Printed is its path. Where there is none and it cannot be had, a line says how to get it; with ``CI=true``
+that is an error.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """Keep executed outputs under a key made of everything a chapter's code can depend on.
 
-Jupyter Book's cache knows a chapter's own cells alone: after an edit of the library it would go on showing old numbers.
-Here the cache lives in a folder named by the content of the library, the exercises, the book's helpers and extensions and
-the locks. The folder's name is a setting of MyST-NB, and Sphinx reads every page anew when such a setting changes.
+Jupyter Book's cache knows a chapter's own cells alone: after an edit of the library it would go on showing
+old numbers. Here the cache lives in a folder named by the content of the library, the exercises, the book's
+helpers and extensions and the locks. The folder's name is a setting of MyST-NB, and Sphinx reads every page
+anew when such a setting changes.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ DEPENDS_ON = (
 
 
 def content_key(root: Path) -> str:
-    """Return a short hash over the files under `root` that executed outputs depend on, and the Python that runs them."""
+    """Return a short hash over what executed outputs depend on: files under `root`, and the Python."""
     digest = hashlib.sha256(f"{sys.version_info[:2]}".encode())
     for pattern in DEPENDS_ON:
         for path in sorted(root.glob(pattern)):

@@ -1,7 +1,8 @@
-"""Set formulas while the book is built: no script runs in the reader's browser, and none comes from elsewhere.
+"""Set formulas while the book is built: no script does it in the reader's browser.
 
-MathJax, run by Node, turns each formula into SVG, which takes the colour of the text, and MathML, which screen readers
-speak. A formula that MathJax refuses is a warning, and so fails the build. Results are kept in ``_build/.formulas.json``.
+MathJax, run by Node, turns each formula into SVG, which takes the colour of the text, and MathML, which
+screen readers speak. A formula that MathJax refuses is a warning, and so fails the build. Results are kept in
+``_build/.formulas.json``.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ class Typesetter:
         if key not in self.known:
             formula = self._ask(tex, display)
             self.glyphs.update(formula["glyphs"])
-            self.known[key] = formula | {"glyphs": {}}  # type: ignore[typeddict-item]
+            self.known[key] = formula | {"glyphs": {}}
         return self.known[key]
 
     def _ask(self, tex: str, display: bool) -> Formula:

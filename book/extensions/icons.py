@@ -1,80 +1,78 @@
-"""Send the theme's icons as the few that are used, instead of a script that holds all of Font Awesome.
+"""Send the theme's icons as the few glyphs that are used, instead of all of Font Awesome.
 
-The theme loads ``_static/scripts/fontawesome.js`` on every page: 541 kB compressed. The outlines of the icons that the
-built site names are read from it, and a style sheet of a few kilobytes, put in by the same script, draws them.
+The theme brings Font Awesome twice: as a script of 541 kB compressed that draws icons as SVG, and as fonts with a style
+sheet. The fonts alone do it. They are cut down to the icons that the pages and style sheets name, with their rules.
 """
 
 from __future__ import annotations
 
-import json
 import re
+from logging import getLogger
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
 
+import pydata_sphinx_theme
+from fontTools import subset
 from sphinx.util import logging
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
 logger = logging.getLogger(__name__)
+getLogger("fontTools").setLevel("WARNING")
+
+THEME = Path(pydata_sphinx_theme.__file__).parent / "theme" / "pydata_sphinx_theme" / "static"
+FONTS = "vendor/fontawesome/webfonts"
+SHEET = "styles/pydata-sphinx-theme.css"
 
 NAMED = re.compile(r"\bfa-([a-z0-9-]+)")
-OUTLINE = re.compile(
-    r'(?:"([a-z0-9-]+)"|([a-z][a-z0-9]*)):\[(\d+),(\d+),\[([^\]]*)\],"[0-9a-f]*",(?:"([^"]*)"|\[("[^\]]*")\])\]'
-)
-NOT_ICONS = {"solid", "regular", "brands", "fw", "lg", "sm", "xs", "xl", "stack", "spin", "inverse"}
-
-RULES = """
-.fa-solid,.fas,.fa-regular,.far,.fa-brands,.fab{display:inline-block;width:1.25em;height:1em;vertical-align:-.125em;\
-background:currentColor;mask:var(--icon) center/contain no-repeat;-webkit-mask:var(--icon) center/contain no-repeat}
-.fa-lg{font-size:1.25em;vertical-align:-.075em}
-"""
+RULE = re.compile(r'((?:\.fa-[a-z0-9-]+:before,?)+)\{content:"\\([0-9a-f]+)"\}')
+DRAWN = re.compile(r'"\\([ef][0-9a-f]{3})\s*"|"([\ue000-\uf8ff])"')
+NO_ICON = {"solid", "regular", "brands", "fw", "lg", "sm", "xs", "xl", "2x"}
 
 
-def outlines(script: str) -> dict[str, tuple[str, str, str]]:
-    """Return width, height and path of every icon in Font Awesome's script, by name and by former name."""
-    icons: dict[str, tuple[str, str, str]] = {}
-    for quoted, bare, width, height, aliases, path, paths in OUTLINE.findall(script):
-        outline = (width, height, path or "".join(json.loads(f"[{paths}]")))
-        for name in (quoted or bare, *re.findall(r'"([a-z0-9-]+)"', aliases)):
-            icons.setdefault(name, outline)
-    return icons
+def prune(sheet: str, asked: set[str]) -> tuple[str, set[str]]:
+    """Return Font Awesome's style sheet without the rules of icons that are not `asked` for, and the names found."""
+    found: set[str] = set()
+
+    def keep(rule: re.Match[str]) -> str:
+        names = asked & set(NAMED.findall(rule[1]))
+        found.update(names)
+        return rule[0] if names else ""
+
+    return RULE.sub(keep, sheet), found
 
 
-def style_sheet(names: set[str], icons: dict[str, tuple[str, str, str]]) -> str:
-    """Return the rules that draw the icons `names`."""
-    rules = []
-    for name in sorted(names):
-        width, height, path = icons[name]
-        svg = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}"><path d="{path}"/></svg>'
-        rules.append(f'.fa-{name}{{--icon:url("data:image/svg+xml,{quote(svg, safe=" /:=")}")}}')
-    return RULES + "\n".join(rules)
+def cut_font(source: Path, glyphs: set[int], target: Path) -> None:
+    """Write the font `source` with `glyphs` alone."""
+    options = subset.Options(flavor="woff2", notdef_outline=True)
+    font = subset.load_font(str(source), options)
+    cutter = subset.Subsetter(options)
+    cutter.populate(unicodes=glyphs)
+    cutter.subset(font)
+    subset.save_font(font, str(target), options)
 
 
 def slim_icons(app: Sphinx, exception: Exception | None) -> None:
-    """Replace Font Awesome's script in the built site."""
-    site = Path(app.outdir)
-    script = site / "_static" / "scripts" / "fontawesome.js"
-    if exception is not None or not script.exists():
+    """Cut Font Awesome down in the built site."""
+    static = Path(app.outdir) / "_static"
+    if exception is not None or not (static / SHEET).exists():
         return
-    from pydata_sphinx_theme import __file__ as theme
-
-    source = Path(theme).parent / "theme/pydata_sphinx_theme/static/scripts/fontawesome.js"
-    icons = outlines(source.read_text("utf-8"))
     asked: set[str] = set()
-    for path in [*site.rglob("*.html"), site / "_static/scripts/sphinx-book-theme.js"]:
+    for path in [*static.parent.rglob("*.html"), static / "scripts" / "sphinx-book-theme.js"]:
         asked.update(NAMED.findall(path.read_text("utf-8")))
-    asked -= NOT_ICONS
-    if missing := asked - icons.keys():
-        logger.warning("icons not found in Font Awesome: %s", ", ".join(sorted(missing)))
-    css = json.dumps(style_sheet(asked & icons.keys(), icons))
-    script.write_text(
-        "// The icons of Font Awesome Free 6 (CC BY 4.0, fontawesome.com/license/free) that these pages use.\n"
-        f'document.head.appendChild(document.createElement("style")).textContent = {css};\n',
-        "utf-8",
+    sheet, found = prune((THEME / SHEET).read_text("utf-8"), asked)
+    if missing := asked - found - NO_ICON:
+        logger.warning("icons that Font Awesome does not have: %s", ", ".join(sorted(missing)))
+    (static / SHEET).write_text(sheet, "utf-8")
+    sheets = "".join(path.read_text("utf-8") for path in static.rglob("*.css"))
+    glyphs = {int(code, 16) if code else ord(letter) for code, letter in DRAWN.findall(sheets)}
+    for font in (THEME / FONTS).glob("*.woff2"):
+        cut_font(font, glyphs, static / FONTS / font.name)
+        (static / FONTS / font.with_suffix(".ttf").name).unlink(missing_ok=True)
+    (static / "scripts" / "fontawesome.js").write_text(
+        "// Icons come from a font: see book/extensions/icons.py.\n", "utf-8"
     )
-    (site / "_static" / "scripts" / "fontawesome.js.map").unlink(missing_ok=True)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """After a build with warnings, the next one starts from the sources again.
 
-Sphinx remembers pages it has read, also those that drew a warning, and does not repeat the warning: a build that failed
-would pass the second time. Executed outputs stay cached, so that starting again costs seconds.
+Sphinx remembers pages it has read, also those that drew a warning, and does not repeat the warning: a build
+that failed would pass the second time. Executed outputs stay cached, so that starting again costs seconds.
 """
 
 from __future__ import annotations

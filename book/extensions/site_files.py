@@ -1,7 +1,7 @@
 """Leave in the site what a reader's browser can ask for, and nothing of earlier builds.
 
-Sphinx never removes a page that was renamed or taken out of the table of contents, and the theme brings source maps,
-three formats of Font Awesome and its own translations of words that no page shows.
+Sphinx never removes a page that was renamed or taken out of the table of contents, and the theme brings
+source maps, three formats of Font Awesome and its own translations of words that no page shows.
 """
 
 from __future__ import annotations
@@ -13,7 +13,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
-NEEDLESS = ("_static/**/*.map", "_static/*macros.html", "_static/images/logo_*", "_static/vendor/fontawesome", "_static/locales")
+NEEDLESS = (
+    "_static/**/*.map",
+    "_static/*macros.html",
+    "_static/images/logo_*",
+    "_static/locales",
+)
 
 
 def remove_needless(app: Sphinx, exception: Exception | None) -> None:

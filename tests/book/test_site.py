@@ -1,0 +1,169 @@
+"""The built site: what is in it, that every figure speaks, and that a failing build fails every time."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+from fontTools.ttLib import TTFont
+
+sys.path.append(str(Path(__file__).parent.parent))
+from conftest import build_book, pages_of
+from truth import silent_figures
+
+pytestmark = pytest.mark.book
+
+OF_SPHINX = {"index.html", "search.html", "genindex.html", "py-modindex.html"}
+EXTRAS = {".buildinfo", ".nojekyll", "objects.inv", "searchindex.js"}
+
+
+def listed(root: Path) -> dict[str, Path]:
+    """Return the pages in the table of contents, each with its source."""
+    names: list[str] = []
+
+    def collect(node: object) -> None:
+        if isinstance(node, dict):
+            names.extend(value for key, value in node.items() if key in {"root", "file"})
+            for value in node.values():
+                collect(value)
+        elif isinstance(node, list):
+            for value in node:
+                collect(value)
+
+    collect(yaml.safe_load((root / "_toc.yml").read_text("utf-8")))
+    return {name: next(p for p in (root / f"{name}.md", root / f"{name}.ipynb") if p.exists()) for name in names}
+
+
+def unexpected(files: set[str], pages: dict[str, Path]) -> set[str]:
+    """Return the files of a site that nothing accounts for."""
+    allowed = {f"{name}.html" for name in pages} | OF_SPHINX | EXTRAS
+    allowed |= {f"_sources/{name}{source.suffix}" for name, source in pages.items()}
+    static = re.compile(
+        r"_static/.*\.(css|js|svg|png|woff2|LICENSE\.txt)|_images/[\w.-]+\.(svg|png)|_downloads/[0-9a-f]{32}/[\w.-]+"
+    )
+    return {name for name in files - allowed if not static.fullmatch(name)}
+
+
+def files_of(site: Path) -> set[str]:
+    return {path.relative_to(site).as_posix() for path in site.rglob("*") if path.is_file()}
+
+
+def test_only_what_is_listed_is_published(site: Path, root: Path) -> None:
+    pages = listed(root)
+    assert not unexpected(files_of(site), pages)
+    assert {f"{name}.html" for name in pages} <= files_of(site)
+
+
+@pytest.mark.parametrize(
+    "stray",
+    ["README.html", "solutions/quickshot.html", "_sources/solutions/quickshot.ipynb", "_static/key.pem", "dhlib/x.py"],
+)
+def test_a_stray_file_would_be_found(site: Path, root: Path, stray: str) -> None:
+    assert unexpected({*files_of(site), stray}, listed(root)) == {stray}
+
+
+def test_every_figure_has_words(site: Path) -> None:
+    silent = {page: found for page in pages_of(site) if (found := silent_figures((site / page).read_text("utf-8")))}
+    assert not silent
+
+
+@pytest.mark.parametrize(
+    "figure",
+    [
+        '<img src="a.png">',
+        '<img src="a.png" alt="  ">',
+        '<img alt="../_images/0123456789abcdef0123456789abcdef.png" src="a.png">',
+        '<img alt="frames.svg" src="frames.svg"/>',
+        '<svg viewBox="0 0 1 1"><path/></svg>',
+    ],
+)
+def test_a_silent_figure_would_be_found(figure: str) -> None:
+    assert silent_figures(f"<p>{figure}</p>")
+
+
+def test_a_speaking_figure_passes() -> None:
+    assert not silent_figures(
+        '<img alt="Two frames" src="a.png"><svg aria-label="Two frames"></svg><svg aria-hidden="true"/>'
+    )
+
+
+def test_icons_are_few_and_all_there(site: Path) -> None:
+    """Every icon that a page names has its rule, and every rule its glyph."""
+    fonts = list((site / "_static").rglob("*.woff2"))
+    assert sum(font.stat().st_size for font in fonts) < 30_000
+    drawn = {code for font in fonts for code in TTFont(font).getBestCmap()}
+    sheet = (site / "_static/styles/pydata-sphinx-theme.css").read_text("utf-8")
+    for page in pages_of(site):
+        for kind, name in re.findall(
+            r'class="[^"]*\b(fa[srb]?|fa-solid|fa-regular) fa-([a-z-]+)', (site / page).read_text("utf-8")
+        ):
+            rule = re.search(rf'\.fa-{name}:before[^{{]*\{{content:"\\([0-9a-f]+)"', sheet)
+            assert rule, f"{page}: {kind} {name}"
+            assert int(rule[1], 16) in drawn, f"{page}: {kind} {name}"
+
+
+def test_links_of_the_book_lead_somewhere(site: Path) -> None:
+    for page in pages_of(site):
+        html = (site / page).read_text("utf-8")
+        for target in re.findall(r'<a [^>]*href="([^"]*)"', html):
+            if re.match(r"https?:|mailto:|javascript:", target):
+                continue
+            path, _, fragment = target.partition("#")
+            file = (site / page).parent / path.split("?")[0] if path else site / page
+            assert file.is_file(), f"{page}: {target}"
+            if fragment:
+                assert re.search(rf'(id|name)="{re.escape(fragment)}"', file.read_text("utf-8")), f"{page}: {target}"
+
+
+def add_page(copy: Path, body: str) -> None:
+    """Put a page into a copy of the book, and that page alone."""
+    header = "---\nfile_format: mystnb\nkernelspec: {name: python3, display_name: Python 3}\n---\n# A page\n\n"
+    (copy / "book" / "page.md").write_text(header + body, "utf-8")
+    (copy / "_toc.yml").write_text("format: jb-book\nroot: book/page\n", "utf-8")
+
+
+@pytest.mark.parametrize(
+    ("body", "complaint"),
+    [
+        ("```{code-cell}\nassert 1 + 1 == 3\n```\n", "AssertionError"),
+        ("$\\nosuchmacro{x}$\n", "formula not understood"),
+        ("{ref}`nowhere`\n", "undefined label"),
+        ("{py:func}`dhlib.nowhere`\n", "dhlib.nowhere"),
+        ("{glue:text}`nothing`\n", "nothing"),
+    ],
+)
+def test_a_mistake_fails_the_build_each_time(copy: Path, body: str, complaint: str) -> None:
+    add_page(copy, body)
+    for _ in range(2):
+        built = build_book(copy, copy, environment={"PYTHONPATH": str(copy)})
+        assert built.returncode != 0
+        assert complaint in built.stdout
+
+
+def test_an_edit_of_the_library_reaches_the_page(copy: Path) -> None:
+    """The chapter's text does not change, the library does: the page must show the new number."""
+    add_page(
+        copy,
+        "```{code-cell}\nimport dhlib._measure\nfrom bookkit import glue_number\n"
+        'glue_number("length", dhlib._measure.LENGTH)\n```\n\nIt is {glue:text}`length` long.\n',
+    )
+    constant = copy / "dhlib" / "_measure.py"
+    page = copy / "_build" / "html" / "book" / "page.html"
+
+    def build(value: str) -> str:
+        constant.write_text(f"LENGTH = {value}\n")
+        built = build_book(copy, copy, environment={"PYTHONPATH": str(copy)})
+        assert built.returncode == 0, built.stdout
+        return built.stdout
+
+    assert "Executing notebook" in build("0.1234")
+    assert "0.1234" in page.read_text("utf-8")
+    assert "Executing notebook" in build("0.5678")
+    assert "0.5678" in page.read_text("utf-8")
+    assert "0.1234" not in page.read_text("utf-8")
+    assert "Executing notebook" not in build("0.5678")
+    assert "Executing notebook" not in build("0.1234"), "the outputs for the old content are still known"
+    assert "0.1234" in page.read_text("utf-8")

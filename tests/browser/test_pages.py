@@ -1,0 +1,148 @@
+"""Every page in Chromium: wide and phone, light and dark, served and from the disk; no other host is asked."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+
+sys.path.append(str(Path(__file__).parent.parent))
+from conftest import pages_of
+from serve import server
+
+pytestmark = [pytest.mark.book, pytest.mark.browser]
+
+
+@pytest.fixture(scope="session")
+def address(site: Path) -> Iterator[str]:
+    """Where the site is served."""
+    httpd = server(site)
+    threading.Thread(target=httpd.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{httpd.server_address[1]}"
+    httpd.shutdown()
+
+
+class Watch:
+    """What a page asks of other hosts, and what it complains of."""
+
+    def __init__(self, page: Any, home: str) -> None:
+        self.strangers: list[str] = []
+        self.complaints: list[str] = []
+        self.home = home
+        page.route("**/*", self.guard)
+        page.on(
+            "console", lambda said: self.complaints.append(said.text) if said.type in {"error", "warning"} else None
+        )
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.on("requestfailed", lambda request: self.complaints.append(f"failed: {request.url}"))
+
+    def guard(self, route: Any) -> None:
+        """Let only the site's own files through."""
+        url = urlsplit(route.request.url)
+        if url.scheme == "data" or f"{url.scheme}://{url.netloc}" == self.home:
+            route.continue_()
+        else:
+            self.strangers.append(route.request.url)
+            route.abort()
+
+
+def settle(page: Any) -> None:
+    """Let scripts end and scroll through the page, so that what loads late loads."""
+    page.wait_for_load_state("networkidle")
+    page.evaluate("window.scrollTo(0, document.body.scrollHeight)")
+    page.wait_for_timeout(50)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize("scheme", ["http", "file"])
+def test_pages(browser: Any, site: Path, address: str, scheme: str, width: int, theme: str) -> None:
+    home = address if scheme == "http" else "file://"
+    base = address if scheme == "http" else site.as_uri()
+    context = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=theme)
+    page = context.new_page()
+    watch = Watch(page, home)
+    faults: list[str] = []
+    for name in pages_of(site):
+        page.goto(f"{base}/{name}")
+        settle(page)
+        if page.evaluate("document.documentElement.dataset.theme") != theme and name != "index.html":
+            faults.append(f"{name}: not {theme}")
+        if (wide := page.evaluate("document.documentElement.scrollWidth")) > width:
+            faults.append(f"{name}: {wide} px wide on a screen of {width}")
+        faults += [f"{name}: {text}" for text in page.evaluate(UNSET_FORMULAS)]
+    context.close()
+    assert not watch.strangers
+    assert not watch.complaints
+    assert not faults
+
+
+# A formula is set when its drawing has a size, each glyph it uses is on the page, and no source is left over.
+UNSET_FORMULAS = """() => [...document.querySelectorAll('main .math')].flatMap(math => {
+  const svg = math.querySelector('svg'), size = svg?.getBoundingClientRect();
+  const hidden = !math.checkVisibility();
+  if (!svg || !hidden && !(size.width > 0 && size.height > 0))
+    return ['formula not set: ' + math.textContent.slice(0, 60)];
+  return [...svg.querySelectorAll('use')].filter(u => !document.querySelector(u.getAttribute('href')))
+    .map(u => 'glyph missing: ' + u.getAttribute('href'));
+})"""
+
+
+def test_a_stranger_and_a_complaint_would_be_found(browser: Any, site: Path, address: str) -> None:
+    page = browser.new_page()
+    watch = Watch(page, address)
+    page.goto(f"{address}/book/index.html")
+    page.evaluate("""() => new Promise(done => {
+        const image = new Image(); image.onerror = done; image.src = 'https://elsewhere.invalid/a.png'; })""")
+    page.evaluate("console.error('oh')")
+    page.close()
+    assert watch.strangers == ["https://elsewhere.invalid/a.png"]
+    assert "oh" in watch.complaints
+
+
+def test_an_unset_formula_would_be_found(browser: Any, address: str) -> None:
+    page = browser.new_page()
+    page.goto(f"{address}/book/index.html")
+    assert page.evaluate("document.querySelectorAll('main .math svg').length") > 0
+    assert not page.evaluate(UNSET_FORMULAS)
+    page.evaluate("document.querySelector('svg.glyphs').remove()")
+    assert page.evaluate(UNSET_FORMULAS)
+    page.close()
+
+
+def test_the_theme_button_changes_the_ground(browser: Any, address: str) -> None:
+    page = browser.new_page(color_scheme="light")
+    page.goto(f"{address}/book/index.html")
+    ground = "getComputedStyle(document.documentElement).getPropertyValue('--dh-ground')"
+    grounds = set()
+    for _ in range(3):
+        page.locator(".theme-switch-button:visible").first.click()
+        grounds.add(page.evaluate(ground).strip())
+    page.close()
+    assert grounds == {"#ffffff", "#121212"}
+
+
+def test_icons_are_drawn(browser: Any, address: str) -> None:
+    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    page.goto(f"{address}/book/index.html")
+    icon = page.locator(".fa-magnifying-glass:visible").first
+    assert icon.evaluate("e => getComputedStyle(e, '::before').content") == '"\uf002"'
+    assert page.evaluate(
+        "document.fonts.ready.then(() => document.fonts.check('900 16px \"Font Awesome 6 Free\"', '\uf002'))"
+    )
+    assert icon.bounding_box()["width"] > 8
+    page.close()
+
+
+def test_search_finds(browser: Any, site: Path, address: str) -> None:
+    """Also from the disk, where scripts may not fetch."""
+    for base in (address, site.as_uri()):
+        page = browser.new_page()
+        page.goto(f"{base}/search.html?q=twist")
+        page.wait_for_selector("#search-results li a")
+        page.close()
