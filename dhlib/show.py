@@ -88,7 +88,9 @@ def table_text(chain: Chain) -> str:
      3 |  q3 |  28 |   0 |  90°
      4 |  q4 | 250 |   0 |   0°
     """
-    headings = [f"{symbol}_{index}" for symbol, index in COLUMNS[chain.convention]]
+    headings = [
+        f"{symbol}_{index}" if index == "i" else f"{symbol}_{{{index}}}" for symbol, index in COLUMNS[chain.convention]
+    ]
     rows = [["i", *headings], *([str(i), *row] for i, row in enumerate(table_rows(chain), 1))]
     widths = [max(len(row[k]) for row in rows) for k in range(5)]
     lines = [" " + " | ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
@@ -122,13 +124,14 @@ def table_html(chain: Chain) -> str:
 
 
 def table_latex(chain: Chain) -> str:
-    """The table as a LaTeX array, between dollars as a notebook expects it.
+    r"""The table as a LaTeX array, between dollars as a notebook expects it.
 
     Examples
     --------
     >>> from dhlib import robots
     >>> print(table_latex(robots.planar(1)))
-    $\\begin{array}{c|cccc}i & \\theta_{i} & d_{i} & a_{i} & \\alpha_{i} \\\\ \\hline 1 & q_{1} & 0 & 1 & 0^\\circ\\end{array}$
+    $\begin{array}{c|cccc}i & \theta_{i} & d_{i} & a_{i} & \alpha_{i} \\ \hline 1 & q_{1} & 0 & 1 &
+    0^\circ\end{array}$
     """
     headings = " & ".join(f"{LATEX[symbol]}_{{{index}}}" for symbol, index in COLUMNS[chain.convention])
     rows = r" \\ ".join(

@@ -94,7 +94,7 @@ def _read_row(row: dict[str, Any], i: int, letter: str, degrees: bool) -> Joint:
 def _read_cell(cell: Any, what: str) -> Scalar:
     if isinstance(cell, str):
         return _parse(cell, what)
-    if is_symbolic(cell):
+    if is_symbolic(cell) and getattr(cell, "free_symbols", None):
         return cell
     if isinstance(cell, np.ndarray) and cell.ndim == 0:
         cell = cell.item()

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dhlib import Chain, Prismatic, Revolute, robots
+from dhlib import Chain, Prismatic, Revolute
 
 ROBOTS = json.loads((Path(__file__).parent / "fk_cases.json").read_text(encoding="utf-8"))["robots"]
 

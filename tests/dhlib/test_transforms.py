@@ -1,0 +1,85 @@
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+
+from dhlib import DHError, Rx, Ry, Rz, Tx, Ty, Tz, inverse
+from dhlib.transforms import pose_fault, read_pose
+
+ROTATIONS = {"x": Rx, "y": Ry, "z": Rz}
+TRANSLATIONS = {"x": Tx, "y": Ty, "z": Tz}
+ANGLES = st.floats(-12, 12)
+
+
+@pytest.mark.parametrize("k", range(-4, 5))
+@pytest.mark.parametrize("name", "xyz")
+def test_quarter_turns_are_exact(name, k):
+    turned = ROTATIONS[name](k * np.pi / 2)
+    assert set(np.unique(turned)) <= {-1.0, 0.0, 1.0}
+    assert not np.any(np.signbit(turned) & (turned == 0)), "no -0"
+    assert_array_equal(turned, np.linalg.matrix_power(ROTATIONS[name](np.pi / 2), k % 4))
+
+
+def test_positive_turns_follow_the_right_hand():
+    x, y, z = np.eye(3)
+    assert_array_equal(Rz(np.pi / 2)[:3, :3] @ x, y)
+    assert_array_equal(Rx(np.pi / 2)[:3, :3] @ y, z)
+    assert_array_equal(Ry(np.pi / 2)[:3, :3] @ z, x)
+
+
+@given(ANGLES, ANGLES)
+def test_turns_about_one_axis_add(one, other):
+    for rotation in ROTATIONS.values():
+        assert_allclose(rotation(one) @ rotation(other), rotation(one + other), atol=3e-15)
+
+
+@given(ANGLES, ANGLES, ANGLES, st.floats(-9, 9))
+def test_products_are_poses(alpha, beta, gamma, length):
+    pose = Rx(alpha) @ Tx(length) @ Ry(beta) @ Ty(length) @ Rz(gamma) @ Tz(length)
+    assert pose_fault(pose) == ""
+    assert_allclose(inverse(pose) @ pose, np.eye(4), atol=1e-13)
+    assert_allclose(inverse(pose), np.linalg.inv(pose), atol=1e-13)
+
+
+def test_arrays_of_any_shape():
+    angles = np.linspace(-3, 3, 6).reshape(2, 3)
+    turned = Rz(angles)
+    assert turned.shape == (2, 3, 4, 4)
+    assert_array_equal(turned[1, 2], Rz(angles[1, 2]))
+    assert Tx([1, 2, 3]).shape == (3, 4, 4)
+    assert inverse(turned).shape == (2, 3, 4, 4)
+
+
+def test_symbols_stay_symbols():
+    theta, length = sympy.symbols("theta l")
+    assert Rz(theta)[0, 1] == -sympy.sin(theta)
+    assert Rx(sympy.pi / 2) == sympy.Matrix([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+    product = Tx(length) * Rz(theta)
+    assert sympy.simplify(inverse(product) * product) == sympy.eye(4)
+
+
+@pytest.mark.parametrize("wrong", ["1", None, float("nan"), float("inf"), 1j, True, [1, "x"], sympy.nan, sympy.oo])
+@pytest.mark.parametrize("transform", [*ROTATIONS.values(), *TRANSLATIONS.values()])
+def test_no_number_is_refused(transform, wrong):
+    with pytest.raises(DHError, match=f"of {transform.__name__}"):
+        transform(wrong)
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "words"),
+    [
+        (np.eye(3), "shape"),
+        (np.diag([1, 1, -1, 1]), "left-handed"),
+        (np.diag([2, 1, 1, 1]), "column n has length 2"),
+        (Tx(3).T, "transposed"),
+        (np.diag([1, 1, 1, 2]), "last row"),
+        (np.array([[1, 0.6, 0, 0], [0, 0.8, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]), "columns n and o"),
+        ([[1, 2], "x"], "numbers only"),
+        (np.full((4, 4), np.nan), "NaN"),
+    ],
+)
+def test_what_is_no_pose_is_said(spoilt, words):
+    with pytest.raises(DHError, match=words):
+        read_pose(spoilt, "base")
