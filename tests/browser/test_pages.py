@@ -53,9 +53,9 @@ class Watch:
 
 def settle(page: Any) -> None:
     """Let scripts end and scroll through the page, so that what loads late loads."""
-    page.wait_for_load_state("networkidle")
+    page.wait_for_load_state("load")
     page.evaluate("window.scrollTo(0, document.body.scrollHeight)")
-    page.wait_for_timeout(50)
+    page.wait_for_timeout(100)
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
@@ -69,9 +69,11 @@ def test_pages(browser: Any, site: Path, address: str, scheme: str, width: int, 
     watch = Watch(page, home)
     faults: list[str] = []
     for name in pages_of(site):
+        if name == "index.html":  # leads on to the first page
+            continue
         page.goto(f"{base}/{name}")
         settle(page)
-        if page.evaluate("document.documentElement.dataset.theme") != theme and name != "index.html":
+        if page.evaluate("document.documentElement.dataset.theme") != theme:
             faults.append(f"{name}: not {theme}")
         if (wide := page.evaluate("document.documentElement.scrollWidth")) > width:
             faults.append(f"{name}: {wide} px wide on a screen of {width}")
@@ -137,6 +139,15 @@ def test_icons_are_drawn(browser: Any, address: str) -> None:
     )
     assert icon.bounding_box()["width"] > 8
     page.close()
+
+
+def test_the_address_of_the_site_leads_to_the_first_page(browser: Any, site: Path, address: str) -> None:
+    for start, end in ((f"{address}/", f"{address}/book/index.html"), (f"{site.as_uri()}/index.html", site.as_uri())):
+        page = browser.new_page()
+        page.goto(start)
+        page.wait_for_url(f"{end}**")
+        page.wait_for_selector("h1")
+        page.close()
 
 
 def test_search_finds(browser: Any, site: Path, address: str) -> None:
