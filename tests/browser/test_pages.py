@@ -142,11 +142,11 @@ def test_icons_are_drawn(browser: Any, address: str) -> None:
 
 
 def test_the_address_of_the_site_leads_to_the_first_page(browser: Any, site: Path, address: str) -> None:
-    for start, end in ((f"{address}/", f"{address}/book/index.html"), (f"{site.as_uri()}/index.html", site.as_uri())):
+    for start in (f"{address}/", f"{site.as_uri()}/index.html"):
         page = browser.new_page()
         page.goto(start)
-        page.wait_for_url(f"{end}**")
         page.wait_for_selector("h1")
+        assert page.url.endswith("/book/index.html")
         page.close()
 
 
