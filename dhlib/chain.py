@@ -17,7 +17,7 @@ import numpy as np
 from dhlib.conventions import classic, link_screw, modified, read_convention
 from dhlib.errors import DHError, DHWarning
 from dhlib.forward import Columns, ScrewX, ScrewZ, to_rows, walk, write
-from dhlib.joints import Joint, Limits, Prismatic, Revolute, replace_joint
+from dhlib.joints import Joint, Limits, Prismatic, Revolute
 from dhlib.scalars import (
     Scalar,
     cos_sin,
@@ -194,7 +194,7 @@ class Chain:
     @cached_property
     def is_symbolic(self) -> bool:
         """Whether a parameter, the base or the tool holds a free symbol."""
-        parts = [part for joint in self.joints for part in (joint.constant, joint.a, joint.alpha, joint.offset)]
+        parts = [part for joint in self.joints for part in (joint.theta, joint.d, joint.a, joint.alpha)]
         parts += [*self._left_over, self._own_base, self._own_tool]
         return any(is_symbolic(part) and bool(part.free_symbols) for part in parts)
 
@@ -243,8 +243,7 @@ class Chain:
         value = q[i - 1] if isinstance(q, list) else q[..., i - 1]
         if self._needs_symbols(q):
             joint, value = _exact_joint(joint), exact(value)
-        varied = joint.value(value)
-        theta, d = (varied, joint.d) if joint.kind == "R" else (joint.theta, varied)
+        theta, d = joint.at(value)
         if self.convention == "classic":
             return classic(theta, d, joint.a, joint.alpha)
         return modified(joint.alpha, joint.a, theta, d)
@@ -507,7 +506,7 @@ class Chain:
         return self._own_base @ link_screw(self.joints[0].a, self.joints[0].alpha)
 
     @cached_property
-    def _constants(self) -> list[tuple[Joint, float, float, int | None, float | None, ScrewX]]:
+    def _steps(self) -> list[tuple[Joint, float, float, int | None, Any, ScrewX]]:
         """What the numeric walk needs of each joint, worked out once."""
         return [
             (
@@ -515,7 +514,7 @@ class Chain:
                 float(joint.sign),
                 float(joint.offset),
                 quarter_turns(joint.theta),
-                float(joint.constant) or None,
+                (float(joint.d) or None) if joint.kind == "R" else cos_sin(float(joint.theta)),
                 (*cos_sin(float(alpha)), float(a) or None),
             )
             for joint, (a, alpha) in zip(self.joints, self._links, strict=True)
@@ -523,9 +522,9 @@ class Chain:
 
     def _screws(self, q: Iterable[Scalar]) -> Iterable[tuple[ScrewZ, ScrewX]]:
         """The word at q, in numbers: for each joint a float or an array of floats."""
-        for value, (joint, sign, offset, quarters, constant, x) in zip(q, self._constants, strict=True):
+        for value, (joint, sign, offset, quarters, constant, x) in zip(q, self._steps, strict=True):
             if joint.kind == "P":
-                yield (*cos_sin(float(joint.theta)), sign * value + offset), x
+                yield (*constant, sign * value + offset), x
             elif quarters is None:
                 yield (*cos_sin(sign * value + offset), constant), x
             else:  # the offset is added without rounding
@@ -535,9 +534,7 @@ class Chain:
     def _exact_screws(self, q: Iterable[Scalar]) -> Iterable[tuple[ScrewZ, ScrewX]]:
         """The word at q, in symbols and exact numbers."""
         for value, joint, (a, alpha) in zip(q, self.joints, self._links, strict=True):
-            joint = _exact_joint(joint)
-            varied = joint.value(exact(value))
-            theta, d = (varied, joint.d) if joint.kind == "R" else (joint.theta, varied)
+            theta, d = _exact_joint(joint).at(exact(value))
             yield (*cos_sin(theta), d), (*cos_sin(exact(alpha, angle=True)), exact(a))
 
     def _between_ends(self, poses: Pose) -> Pose:
@@ -628,13 +625,11 @@ def _read_joints(joints: Any) -> tuple[Joint, ...]:
 
 def _exact_joint(joint: Joint) -> Joint:
     """The joint with its numbers as sympy shows them best."""
-    revolute = joint.kind == "R"
-    return replace_joint(
-        joint,
-        constant=exact(joint.constant, angle=not revolute),
+    return joint.replace(
+        theta=exact(joint.theta, angle=True),
+        d=exact(joint.d),
         a=exact(joint.a),
         alpha=exact(joint.alpha, angle=True),
-        offset=exact(joint.offset, angle=revolute),
     )
 
 

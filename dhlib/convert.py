@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dhlib.chain import Chain
-from dhlib.joints import Joint
 from dhlib.scalars import Scalar
 
 Link = tuple[Scalar, Scalar]
@@ -33,7 +32,7 @@ def to_classic(chain: Chain) -> Chain:
 
 
 def _rebracketed(chain: Chain, convention: str, links: Sequence[Link], left_over: Link) -> Chain:
-    joints: list[Joint] = [joint.with_link(*link) for joint, link in zip(chain.joints, links, strict=True)]
+    joints = [joint.replace(a=a, alpha=alpha) for joint, (a, alpha) in zip(chain.joints, links, strict=True)]
     converted = Chain(joints, convention, chain._own_base, chain._own_tool, chain.name, chain.unit)
     converted._left_over = left_over
     return converted

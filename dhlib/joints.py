@@ -1,7 +1,7 @@
 """One row of a DH table: a joint, and the link beside it.
 
-Of the four parameters a and α describe the link and are constant. One of θ and d is the joint's variable q;
-the other is constant.
+Of the four parameters a and α describe the link and are constant. One of θ and d is the joint's variable; the
+other is constant.
 """
 
 from __future__ import annotations
@@ -16,71 +16,81 @@ from dhlib.scalars import Scalar, is_symbolic, read_scalar
 Limits = tuple[float, float]
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, repr=False)
 class Joint:
     """What revolute and prismatic joints have in common; make a :class:`Revolute` or a :class:`Prismatic`.
 
-    ``a`` and ``alpha`` stand in the row of the joint: a_i and α_i in a classic chain, a_{i-1} and α_{i-1} in a
-    modified one. ``constant`` is the other joint parameter: d of a revolute joint, θ of a prismatic one. The
-    variable one is ``sign * q + offset``.
+    ``theta`` and ``d`` are the joint parameters at q = 0. ``a`` and ``alpha`` stand in the row of the joint: a_i
+    and α_i in a classic chain, a_{i-1} and α_{i-1} in a modified one.
     """
 
     kind: ClassVar[str]
     variable: ClassVar[str]
 
-    constant: Scalar
+    theta: Scalar
+    d: Scalar
     a: Scalar
     alpha: Scalar
-    offset: Scalar
     limits: Limits | None
     sign: int
 
-    def _set(self, *, constant: Any, a: Any, alpha: Any, offset: Any, limits: Any, sign: Any, unknown: Any) -> None:
+    def _fill(self, names: dict[str, str], unknown: dict[str, Any], **values: Any) -> None:
+        """Check the values and keep them; `names` tells under which keyword the user gave θ and d."""
         here = f"{type(self).__name__}(…)"
-        angle, length = ("offset", "d") if self.kind == "R" else ("theta", "offset")
         if unknown:
-            self._refuse_keywords(here, unknown)
-        values = {
-            "constant": read_scalar(constant, f"{length if self.kind == 'R' else angle} of {here}"),
-            "a": read_scalar(a, f"a of {here}"),
-            "alpha": read_angle(alpha, f"alpha of {here}"),
-            "offset": read_scalar(offset, f"offset of {here}"),
-            "limits": read_limits(limits, here),
-            "sign": sign,
-        }
-        read_angle(values["offset"] if self.kind == "R" else values["constant"], f"{angle} of {here}")
-        if sign not in (1, -1):
-            raise DHError(f"sign of {here} is {sign!r}; it should be 1, or -1 for a joint that turns the other way.")
+            self._refuse(here, next(iter(unknown)), names)
+        values["theta"] = read_angle(values["theta"], f"{names['theta']} of {here}")
+        values["alpha"] = read_angle(values["alpha"], f"alpha of {here}")
+        values["d"] = read_scalar(values["d"], f"{names['d']} of {here}")
+        values["a"] = read_scalar(values["a"], f"a of {here}")
+        values["limits"] = read_limits(values["limits"], here)
+        if values["sign"] not in (1, -1):
+            raise DHError(f"sign of {here} is {values['sign']!r}; it should be 1, or -1 for a joint that counts down.")
         for name, value in values.items():
             object.__setattr__(self, name, value)
 
-    def _refuse_keywords(self, here: str, unknown: dict[str, Any]) -> None:
-        name = next(iter(unknown))
+    def _refuse(self, here: str, name: str, names: dict[str, str]) -> None:
         if name == self.variable:
+            other = "Prismatic" if self.kind == "R" else "Revolute"
             raise DHError(
-                f"{here} was given {name}, but {name} is the variable of this joint; give its zero as offset=…, "
-                f"or use {'Prismatic' if self.kind == 'R' else 'Revolute'} if {name} is constant."
+                f"{here} was given {name}, but {name} is the variable of this joint. "
+                f"Give its zero as offset=…, or use {other} if {name} is constant."
             )
-        other = "d" if self.kind == "R" else "theta"
-        raise DHError(f"{here} has no parameter {name!r}; it takes {other}, a, alpha, offset, limits and sign.")
-
-    def value(self, q: Scalar) -> Scalar:
-        """The joint parameter that varies, at q: ``sign * q + offset``."""
-        return self.sign * q + self.offset
-
-    def with_link(self, a: Scalar, alpha: Scalar) -> Joint:
-        """The same joint with another link in its row."""
-        return replace_joint(self, a=a, alpha=alpha)
+        constant = "d" if self.kind == "R" else "theta"
+        raise DHError(f"{here} has no parameter {name!r}; it takes {constant}, a, alpha, offset, limits and sign.")
 
     @property
-    def theta(self) -> Scalar:
-        """Joint angle θ at q = 0."""
-        return self.offset if self.kind == "R" else self.constant
+    def offset(self) -> Scalar:
+        """What the variable is at q = 0: θ of a revolute joint, d of a prismatic one."""
+        return self.theta if self.kind == "R" else self.d
 
-    @property
-    def d(self) -> Scalar:
-        """Link offset d at q = 0."""
-        return self.constant if self.kind == "R" else self.offset
+    def at(self, q: Scalar) -> tuple[Scalar, Scalar]:
+        """Return θ and d at q: one of them is ``sign * q + offset``.
+
+        Examples
+        --------
+        >>> Revolute(d=2.0, offset=0.5, sign=-1).at(0.25)
+        (0.25, 2.0)
+        """
+        varied = self.sign * q + self.offset
+        return (varied, self.d) if self.kind == "R" else (self.theta, varied)
+
+    def replace(self, **changes: Any) -> Joint:
+        """Return the joint with some of theta, d, a, alpha, limits and sign changed.
+
+        Examples
+        --------
+        >>> Revolute(d=2, a=1).replace(a=3)
+        Revolute(d=2, a=3)
+        """
+        new = {name: getattr(self, name) for name in ("theta", "d", "a", "alpha", "limits", "sign")} | changes
+        new["offset"] = new.pop(self.variable)
+        return type(self)(**new)
+
+    def __repr__(self) -> str:
+        from dhlib.show import joint_text
+
+        return joint_text(self)
 
 
 class Revolute(Joint):
@@ -125,10 +135,8 @@ class Revolute(Joint):
         sign: int = 1,
         **unknown: Any,
     ) -> None:
-        self._set(constant=d, a=a, alpha=alpha, offset=offset, limits=limits, sign=sign, unknown=unknown)
-
-    def __repr__(self) -> str:
-        return describe(self)
+        names = {"theta": "offset", "d": "d"}
+        self._fill(names, unknown, theta=offset, d=d, a=a, alpha=alpha, limits=limits, sign=sign)
 
 
 class Prismatic(Joint):
@@ -172,25 +180,8 @@ class Prismatic(Joint):
         sign: int = 1,
         **unknown: Any,
     ) -> None:
-        self._set(constant=theta, a=a, alpha=alpha, offset=offset, limits=limits, sign=sign, unknown=unknown)
-
-    def __repr__(self) -> str:
-        return describe(self)
-
-
-def replace_joint(joint: Joint, **changes: Any) -> Joint:
-    """The joint with some of its fields changed: ``constant``, ``a``, ``alpha``, ``offset``, ``limits``, ``sign``."""
-    fields = {
-        "a": joint.a,
-        "alpha": joint.alpha,
-        "offset": joint.offset,
-        "limits": joint.limits,
-        "sign": joint.sign,
-    }
-    constant = changes.pop("constant", joint.constant)
-    if joint.kind == "R":
-        return Revolute(d=constant, **{**fields, **changes})
-    return Prismatic(theta=constant, **{**fields, **changes})
+        names = {"theta": "theta", "d": "offset"}
+        self._fill(names, unknown, theta=theta, d=offset, a=a, alpha=alpha, limits=limits, sign=sign)
 
 
 def read_angle(value: Any, what: str) -> Scalar:
@@ -215,20 +206,3 @@ def read_limits(limits: Any, here: str) -> Limits | None:
     if not low <= high:
         raise DHError(f"limits of {here} are ({low:g}, {high:g}); the first should not be above the second.")
     return low, high
-
-
-def describe(joint: Joint) -> str:
-    """A joint in one line, leaving out what is zero."""
-    from dhlib.show import angle_text, number_text
-
-    angle = {"R": "offset", "P": "theta"}[joint.kind]
-    length = {"R": "d", "P": "offset"}[joint.kind]
-    shown = {
-        angle: angle_text(joint.theta) if joint.theta != 0 else "",
-        length: number_text(joint.d) if joint.d != 0 else "",
-        "a": number_text(joint.a) if joint.a != 0 else "",
-        "alpha": angle_text(joint.alpha) if joint.alpha != 0 else "",
-        "sign": "-1" if joint.sign == -1 else "",
-    }
-    order = ("d", "theta", "a", "alpha", "offset", "sign")
-    return f"{type(joint).__name__}({', '.join(f'{name}={shown[name]}' for name in order if shown.get(name))})"

@@ -54,6 +54,24 @@ def variable_text(joint: Joint, i: int) -> str:
     return f"{variable} - {offset[1:]}" if offset.startswith("-") else f"{variable} + {offset}"
 
 
+def joint_text(joint: Joint) -> str:
+    """A joint in one line, leaving out what is zero.
+
+    Examples
+    --------
+    >>> from dhlib import Prismatic
+    >>> joint_text(Prismatic(offset=0.5))
+    'Prismatic(offset=0.5)'
+    """
+    theta, d = ("offset", "d") if joint.kind == "R" else ("theta", "offset")
+    parts = [(d, joint.d, number_text), (theta, joint.theta, angle_text)]
+    if joint.kind == "P":
+        parts.reverse()
+    parts[1:1] = [("a", joint.a, number_text), ("alpha", joint.alpha, angle_text)]
+    shown = [f"{name}={text(value)}" for name, value, text in parts if value != 0]
+    return f"{type(joint).__name__}({', '.join(shown + ['sign=-1'] * (joint.sign < 0))})"
+
+
 def table_rows(chain: Chain) -> list[list[str]]:
     """The table as text, row by row, in the order of :data:`COLUMNS`."""
     rows = []

@@ -47,8 +47,8 @@ def fused_runs(chain: Chain) -> list[Fused]:
     angle, shift = sympy.Integer(0), [sympy.Integer(0)] * 3
     half_turns = 0  # an odd number: the joints count the other way
     for joint, symbol, (a, alpha) in zip(chain.joints, joint_symbols(chain), chain._links, strict=True):
-        theta = symbol if joint.kind == "R" else exact(joint.constant, angle=True)
-        d = exact(joint.constant) if joint.kind == "R" else symbol
+        theta = symbol if joint.kind == "R" else exact(joint.theta, angle=True)
+        d = exact(joint.d) if joint.kind == "R" else symbol
         sense = -1 if half_turns % 2 else 1
         angle = angle + sense * theta
         shift = [shift[0], shift[1], shift[2] + sense * d]

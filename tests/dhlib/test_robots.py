@@ -6,7 +6,6 @@ from arms import EVERY_ROBOT
 from numpy.testing import assert_allclose, assert_array_equal
 
 from dhlib import Chain, Tz, robots
-from dhlib.joints import replace_joint
 
 Q = np.random.default_rng(4).uniform(-2, 2, (6, 6))
 
@@ -15,8 +14,8 @@ def with_lengths(chain, **lengths):
     """The chain with parameters such as d3 or a2 (of row 3, row 2) replaced."""
     joints = list(chain.joints)
     for name, value in lengths.items():
-        field, row = {"a": "a", "d": "constant"}[name[0]], int(name[1:]) - 1
-        joints[row] = replace_joint(joints[row], **{field: value})
+        row = int(name[1:]) - 1
+        joints[row] = joints[row].replace(**{name[0]: value})
     return Chain(joints, chain.convention, base=chain.base, tool=chain.tool)
 
 

@@ -22,7 +22,7 @@ def bare(chain):
 def test_equals_the_product(name, convention):
     chain = CHAINS[name].to_classic() if convention == "classic" else CHAINS[name].to_modified()
     q = np.random.default_rng(2).uniform(-3, 3, chain.n)
-    varied = [joint.value(value) for joint, value in zip(chain.joints, q, strict=True)]
+    varied = [joint.sign * value + joint.offset for joint, value in zip(chain.joints, q, strict=True)]
     values = sympy.lambdify([joint_symbols(chain)], chain.symbolic())(varied)
     assert_allclose(values, bare(chain).fk(q), atol=1e-12 * max(1, chain.reach))
 
