@@ -145,7 +145,7 @@ def test_the_address_of_the_site_leads_to_the_first_page(browser: Any, site: Pat
     for start in (f"{address}/", f"{site.as_uri()}/index.html"):
         page = browser.new_page()
         page.goto(start)
-        page.wait_for_selector("h1")
+        page.wait_for_selector("article h1")
         assert page.url.endswith("/book/index.html")
         page.close()
 
