@@ -1,7 +1,7 @@
 """dhlib: the Denavit-Hartenberg conventions, for numbers and symbols.
 
 Read it in the order of the book: `transforms`, `conventions`, `joints`, `forward`, `chain`, `convert`,
-`symbolic`, `axes`, `placement`, `mechanism`, `robots`.
+`symbolic`, `axes`, `normals`, `preconditions`, `placement`, `mechanism`, `robots`.
 """
 
 from dhlib import robots
@@ -10,6 +10,8 @@ from dhlib.chain import Chain
 from dhlib.conventions import classic, modified
 from dhlib.errors import DHError, DHWarning
 from dhlib.joints import Prismatic, Revolute
+from dhlib.placement import Choice, Placement, place_frames, read_parameters
+from dhlib.preconditions import FrameReport, LinkReport, check_frames
 from dhlib.transforms import Rx, Ry, Rz, Tx, Ty, Tz, inverse
 
 __version__ = "0.1.0.dev0"
@@ -17,8 +19,12 @@ __version__ = "0.1.0.dev0"
 __all__ = [
     "Axis",
     "Chain",
+    "Choice",
     "DHError",
     "DHWarning",
+    "FrameReport",
+    "LinkReport",
+    "Placement",
     "Prismatic",
     "Revolute",
     "Rx",
@@ -27,8 +33,11 @@ __all__ = [
     "Tx",
     "Ty",
     "Tz",
+    "check_frames",
     "classic",
     "inverse",
     "modified",
+    "place_frames",
+    "read_parameters",
     "robots",
 ]
