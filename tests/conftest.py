@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import shutil
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import chromium
 import pytest
+from building import build_book
 from filelock import FileLock
 
 ROOT = Path(__file__).parent.parent
@@ -21,22 +19,6 @@ ROOT = Path(__file__).parent.parent
 def root() -> Path:
     """The root of the repository."""
     return ROOT
-
-
-def build_book(
-    source: Path, into: Path, *, environment: dict[str, str] | None = None
-) -> subprocess.CompletedProcess[str]:
-    """Build the book of `source` as `make book` does; the site is at ``into/_build/html``."""
-    jupyter_book = [sys.executable, "-c", "from jupyter_book.cli.main import main; main()"]
-    return subprocess.run(
-        [*jupyter_book, "build", str(source), "--path-output", str(into), "-n", "-W", "--keep-going"],
-        cwd=source,
-        env=os.environ | {"NO_COLOR": "1"} | (environment or {}),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        encoding="utf-8",
-        check=False,
-    )
 
 
 @pytest.fixture(scope="session")
@@ -92,8 +74,3 @@ def browser() -> Iterator[Any]:
         )
         yield started
         started.close()
-
-
-def pages_of(site: Path) -> list[str]:
-    """Return the pages of a built site, by path."""
-    return sorted(page.relative_to(site).as_posix() for page in site.rglob("*.html"))

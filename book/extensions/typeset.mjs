@@ -21,7 +21,7 @@ function typeset({ tex, display }) {
       return "";
     })
     .replace(/ xlink:href="#MJX-\d+-TEX-/g, ' href="#glyph-')
-    .replace(/ (data-[a-z-]+|xmlns:xlink|xmlns|role|focusable)="[^"]*"/g, "")
+    .replace(/ (data-(?!line|frame)[a-z-]+|xmlns:xlink|xmlns|role|focusable)="[^"]*"/g, "")
     .replace("<svg", '<svg aria-hidden="true"');
   const error = html.match(/data-mjx-error="([^"]*)"/)?.[1] ?? null;
   const mathml = error ? "" : MathJax.tex2mml(tex, { display }).replace(/>\s+</g, "><").replace(/ data-[a-z-]+="[^"]*"/g, "");

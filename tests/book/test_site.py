@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import re
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
+from building import build_book, pages_of
 from fontTools.ttLib import TTFont
-
-sys.path.append(str(Path(__file__).parent.parent))
-from conftest import build_book, pages_of
 from truth import silent_figures
 
 pytestmark = pytest.mark.book

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,9 +9,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-
-sys.path.append(str(Path(__file__).parent.parent))
-from conftest import pages_of
+from building import pages_of
 from serve import server
 
 pytestmark = [pytest.mark.book, pytest.mark.browser]
