@@ -1,0 +1,41 @@
+"""The command ``dhlib``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+
+from dhlib.errors import DHError
+
+#: What `main` returns, and so the exit code of the command.
+DONE, SOME_UNREADABLE, MISUSE = 0, 1, 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Returns
+    -------
+    int
+        0 if all went well, 1 if a notebook could not be graded, 2 if the command itself was wrong.
+    """
+    from dhlib.grading import command
+
+    parser = argparse.ArgumentParser(prog="dhlib", description="The DH book's library on the command line.")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    command.add_grade(commands)
+    options = parser.parse_args(arguments)
+    run: Callable[[argparse.Namespace], int] = options.run
+    try:
+        return run(options)
+    except DHError as error:
+        print(f"dhlib: {error}", file=sys.stderr)
+        return MISUSE
+    except KeyboardInterrupt:
+        print("dhlib: stopped.", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

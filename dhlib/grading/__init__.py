@@ -1,0 +1,47 @@
+"""Marking exercises: what is asked, what was answered, what it is worth.
+
+Imports run one way, and the two halves never meet in one process when strangers' notebooks are graded:
+
+* untrusted, beside the student's code: `answers` reads an answer into plain JSON; `box` runs a notebook;
+* trusted, beside the references: `forms` and `exercise` say what is asked, `misconceptions` what goes wrong,
+  `marking` judges, and `check`, `plugin` and `grade` are its faces.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from dhlib.grading.check import Checker
+
+__all__ = ["checker"]
+
+
+def checker(name: str, exercises: str | None = None) -> Checker:
+    """The function ``check(part, answer)`` of an exercise, for its notebook.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``"quickshot"``.
+    exercises : str, optional
+        Folder to look in first; else ``./exercises``, else the exercises that come with dhlib.
+
+    Returns
+    -------
+    Checker
+
+    Raises
+    ------
+    DHError
+        If there is no such exercise.
+
+    Examples
+    --------
+    >>> check = checker("quickshot")
+    >>> check("slip", "n_y")
+    slip: right.
+    """
+    from dhlib.grading.check import Checker
+
+    return Checker(name, exercises)

@@ -1,0 +1,111 @@
+"""``dhlib grade``: several notebooks, each in a process of its own."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+from dhlib.errors import DHError
+from dhlib.grading.grade import FAILED, GRADED, Result, grade_notebook
+
+DESCRIPTION = """\
+Grade notebooks: put the answers of each into the pristine exercise, run it in a process of its own, mark the answers,
+and write grades.csv and a feedback page for each notebook into a folder.
+
+This is no sandbox: a notebook may read and write whatever you may, and use the network. Grade only notebooks of people
+you trust, or on a machine that holds nothing of worth."""
+
+EPILOG = """\
+Exit code: 0 if every notebook was graded; 1 if some could not be read or were stopped (grades.csv says which and why);
+2 if the command itself was wrong."""
+
+
+def add_grade(commands: Any) -> None:
+    """Add ``grade`` to the commands of the parser."""
+    parser = commands.add_parser(
+        "grade",
+        help="grade notebooks",
+        description=DESCRIPTION,
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("path", type=Path, metavar="FILE_OR_FOLDER", help="a notebook, or a folder of notebooks")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where results go")
+    parser.add_argument(
+        "--exercise", default="", metavar="NAME", help="which exercise it is, if the notebooks do not say"
+    )
+    parser.add_argument("--exercises", type=Path, metavar="DIR", help="where to look for exercises first")
+    parser.add_argument("--timeout", type=_positive, default=60.0, metavar="S", help="seconds for a notebook (60)")
+    parser.add_argument("--workers", type=_count, default=os.cpu_count() or 1, metavar="N", help="notebooks at a time")
+    parser.set_defaults(run=grade)
+
+
+def grade(options: argparse.Namespace) -> int:
+    """Grade, write and sum up."""
+    from dhlib.grading.report import write_reports
+
+    paths = find_notebooks(options.path)
+    results = []
+    for k, result in enumerate(_grade_all(paths, options), 1):
+        score = f"{result.points:g} of {result.out_of:g}" if result.exercise else "–"
+        print(
+            f"[{k}/{len(paths)}] {result.path.name}: {result.status}, {score}  {result.message}".rstrip(),
+            file=sys.stderr,
+        )
+        results.append(result)
+    table = write_reports(results, options.out, options.path)
+    print(f"Grades: {table}")
+    return 0 if all(result.status == GRADED for result in results) else 1
+
+
+def find_notebooks(path: Path) -> list[Path]:
+    """The notebooks that a path stands for, in order.
+
+    Raises
+    ------
+    DHError
+        If there is none.
+    """
+    if path.is_file():
+        return [path]
+    if not path.is_dir():
+        raise DHError(f"there is no file or folder {path}.")
+    hidden = {".ipynb_checkpoints", "__MACOSX"}
+    found = sorted(p for p in path.rglob("*.ipynb") if p.is_file() and not hidden & set(p.relative_to(path).parts))
+    if not found:
+        raise DHError(f"there is no notebook (*.ipynb) in {path}.")
+    return found
+
+
+def _grade_all(paths: Sequence[Path], options: argparse.Namespace) -> Iterator[Result]:
+    def grade_one(path: Path) -> Result:
+        try:
+            return grade_notebook(path, options.exercise, options.exercises, options.timeout)
+        except DHError:
+            raise
+        except Exception as error:  # ours to mend; the others should not suffer
+            return Result(
+                path, FAILED, f"The grader failed on it ({type(error).__name__}: {error}). Please report this."
+            )
+
+    with ThreadPoolExecutor(options.workers) as pool:
+        yield from pool.map(grade_one, paths)
+
+
+def _positive(text: str) -> float:
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError("should be more than 0")
+    return value
+
+
+def _count(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError("should be 1 or more")
+    return value

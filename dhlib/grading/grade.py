@@ -1,0 +1,119 @@
+"""Grade one notebook: the pristine exercise with its answers, run in a box, marked here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from dhlib.errors import DHError
+from dhlib.grading.exercise import Exercise, find_exercise, load_exercise
+from dhlib.grading.marking import Marker
+from dhlib.grading.marks import OPEN, Mark
+from dhlib.grading.notebook import Cell, exercise_name, load_notebook, merge, read_cells
+from dhlib.grading.runner import Outcome, run_notebook
+
+GRADED, INCOMPLETE, UNREADABLE, FAILED = "graded", "stopped", "unreadable", "failed"
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of one notebook.
+
+    Parameters
+    ----------
+    path : Path
+    status : {"graded", "stopped", "unreadable", "failed"}
+        Stopped: the run ended early, and what was handed in until then is marked. Failed: the grader failed, not the
+        student.
+    message : str
+        A sentence where the status is not "graded".
+    exercise : Exercise, optional
+    marks : sequence of Mark
+    """
+
+    path: Path
+    status: str
+    message: str = ""
+    exercise: Exercise | None = None
+    marks: Sequence[Mark] = field(default_factory=tuple)
+
+    @property
+    def points(self) -> float:
+        """Points earned."""
+        return round(sum(mark.points for mark in self.marks), 2)
+
+    @property
+    def out_of(self) -> float:
+        """Points that could be earned."""
+        return self.exercise.points if self.exercise else 0.0
+
+
+def grade_notebook(
+    path: str | Path, name: str = "", exercises: str | Path | None = None, seconds: float = 60.0
+) -> Result:
+    """Grade one notebook.
+
+    Parameters
+    ----------
+    path : path
+    name : str, optional
+        The exercise; by default what the notebook's metadata says, else its file name.
+    exercises : path, optional
+        Where to look for exercises first.
+    seconds : float
+        Time limit.
+
+    Returns
+    -------
+    Result
+        Also for a file that is no notebook: it never raises for what a student handed in.
+
+    Raises
+    ------
+    DHError
+        If the exercise itself is missing or broken, which is the grader's to mend.
+    """
+    path = Path(path)
+    try:
+        notebook = load_notebook(path)
+        submission = read_cells(notebook)
+    except DHError as error:
+        return Result(path, UNREADABLE, str(error))
+    exercise, pristine = _exercise(name or exercise_name(notebook) or path.stem, exercises, given=bool(name))
+    if exercise is None:
+        return Result(path, UNREADABLE, f"{path.name} does not say which exercise it is; name it with --exercise NAME.")
+    cells = merge(pristine, submission)
+    requests = {part.id: part.asks.request() for part in exercise.parts}
+    outcome = run_notebook(cells, requests, seconds)
+    marks = [_with_error(mark, cells, outcome) for mark in Marker(exercise).mark_all(outcome.readings)]
+    return Result(path, INCOMPLETE if outcome.note else GRADED, outcome.note, exercise, marks)
+
+
+def _exercise(
+    name: str, exercises: str | Path | None, given: bool
+) -> tuple[Exercise, list[Cell]] | tuple[None, list[Cell]]:
+    """The exercise and its pristine cells; none if a submission names one that is not there."""
+    try:
+        find_exercise(name, ".py", exercises)
+    except DHError:
+        if given:
+            raise
+        return None, []
+    return load_exercise(name, exercises), read_cells(load_notebook(find_exercise(name, ".ipynb", exercises)))
+
+
+def _with_error(mark: Mark, cells: Sequence[Cell], outcome: Outcome) -> Mark:
+    """A mark that says why there is no answer, where its cell stopped."""
+    if mark.verdict != OPEN:
+        return mark
+    for k, cell in enumerate(cells):
+        if cell.role == "answer" and cell.part == mark.part:
+            if k in outcome.killers:
+                says = "Its cell ended the whole program or never ended, so it was left out."
+            elif k in outcome.errors:
+                says = f"Its cell stopped with an error: {outcome.errors[k].rstrip('.')}."
+            else:
+                continue
+            return Mark(mark.part, mark.points, mark.out_of, mark.verdict, says, "", mark.section)
+    return mark

@@ -1,0 +1,277 @@
+"""The trusted half: judge a reading.
+
+One function, `mark`, serves every face: the page, the notebook's check, pytest and the class. It trusts nothing in
+a reading but what it has validated itself, and it judges by meaning: by value, or as a mechanism.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dhlib.grading.exercise import Exercise, Part
+from dhlib.grading.faults import MISSING, sentence, shape_text
+from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, Table, Valued
+from dhlib.grading.frames import judge_frames
+from dhlib.grading.marks import COARSE, FOLLOWS, NEARLY, OPEN, RIGHT, UNREADABLE, WRONG, Mark, make_mark
+from dhlib.grading.misconceptions import KNOWN, name_one, would_have_given
+from dhlib.grading.poses import describe, improper
+from dhlib.grading.tables import judge_table
+from dhlib.scalars import FloatArray
+
+Reading = Mapping[str, Any]
+
+#: A number that no answer holds; beyond it arithmetic would overflow.
+LARGEST_NUMBER = 1e9
+LONGEST_TEXT = 500
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """An answer that was judged before, for parts that follow from it."""
+
+    mark: Mark
+    values: FloatArray | None
+
+
+class Refused(Exception):
+    """A reading is not what an honest reader of answers makes."""
+
+
+def mark(part: Part, reading: Any, earlier: Mapping[str, Earlier] | None = None) -> Mark:
+    """Judge a reading of one part.
+
+    Parameters
+    ----------
+    part : Part
+    reading : dict
+        What `answers.read_answer` made; anything else is refused in words.
+    earlier : mapping of str to Earlier, optional
+        Answers to earlier parts: what follows from a wrong one is not punished again.
+
+    Returns
+    -------
+    Mark
+
+    Examples
+    --------
+    >>> from dhlib.grading.exercise import load_exercise
+    >>> part = load_exercise("quickshot").part("slip")
+    >>> print(mark(part, {"choice": "n_z"}))
+    slip: not yet. n_z is right as printed: it is -S23 C4, written out.
+    """
+    return judge(part, reading, earlier or {}).mark
+
+
+def judge(part: Part, reading: Any, earlier: Mapping[str, Earlier]) -> Earlier:
+    """Judge a reading, and keep its values for the parts that follow from it."""
+    if not isinstance(reading, dict):
+        reading = {"fault": "refused"}
+    if "fault" in reading:
+        verdict = OPEN if reading["fault"] in MISSING else UNREADABLE
+        options = ", ".join(part.asks.options) if isinstance(part.asks, Choice) else ""
+        return Earlier(make_mark(part, verdict, sentence(reading, part.id, wanted(part), options)), None)
+    try:
+        match part.asks:
+            case Choice():
+                return Earlier(_judge_choice(part, part.asks, reading), None)
+            case Table():
+                return Earlier(judge_table(part, part.asks, _table(reading)), None)
+            case Frames():
+                (frames,) = _values(reading, 1, (part.asks.count, 4, 4))
+                return Earlier(judge_frames(part, part.asks, frames), None)
+            case Valued():
+                values = _values(reading, len(part.asks.probes), part.asks.shape, isinstance(part.asks, Formula))
+                return Earlier(_judge_values(part, part.asks, values, earlier), values)
+    except Refused:
+        return Earlier(make_mark(part, UNREADABLE, sentence({"fault": "refused"}, part.id, wanted(part))), None)
+
+
+class Marker:
+    """Marks the answers of one notebook in their order.
+
+    Parameters
+    ----------
+    exercise : Exercise
+
+    Examples
+    --------
+    >>> from dhlib.grading.exercise import load_exercise
+    >>> Marker(load_exercise("quickshot")).mark("A1", {"fault": "missing"}).message
+    'Put your answer in place of the three dots.'
+    """
+
+    def __init__(self, exercise: Exercise) -> None:
+        self.exercise = exercise
+        self._earlier: dict[str, Earlier] = {}
+
+    def mark(self, part_id: str, reading: Any) -> Mark:
+        """Mark one answer; raises DHError if there is no such part."""
+        part = self.exercise.part(part_id)
+        judged = judge(part, reading, self._earlier)
+        self._earlier[part.id] = judged
+        return judged.mark
+
+    def mark_all(self, readings: Mapping[str, Any]) -> list[Mark]:
+        """Mark every part; one that is not among the readings is open."""
+        return [self.mark(part.id, readings.get(part.id, {"fault": "undefined"})) for part in self.exercise.parts]
+
+
+def wanted(part: Part) -> str:
+    """What a part asks for, in words.
+
+    Examples
+    --------
+    >>> from dhlib.grading.exercise import load_exercise
+    >>> wanted(load_exercise("quickshot").part("A1"))
+    'a matrix of 4 rows and 4 columns'
+    """
+    match part.asks:
+        case Choice():
+            return f"one of {', '.join(part.asks.options)}"
+        case Table():
+            return f"a DH table with {part.chain.n} rows"
+        case Frames():
+            return f"a list of {part.asks.count} matrices, 4 by 4"
+        case Function():
+            return f"a function {part.asks.signature} that returns {_array_text(part.asks.shape)}"
+        case Formula():
+            return f"{_array_text(part.asks.shape, 'formula')} in {', '.join(part.asks.symbols)}"
+        case Numbers():
+            return _array_text(part.asks.shape)
+    raise AssertionError(part.asks)
+
+
+def _array_text(shape: tuple[int, ...], one: str = "number") -> str:
+    if not shape:
+        return f"one {one}"
+    return f"a vector of {shape_text(list(shape))}" if len(shape) == 1 else f"a matrix of {shape_text(list(shape))}"
+
+
+# Validating
+
+
+def _values(reading: Mapping[str, Any], count: int, shape: tuple[int, ...], holes: bool = False) -> FloatArray:
+    """The values of a reading, (count, *shape); NaN where a formula has none."""
+    values = reading.get("values")
+    if not isinstance(values, list) or len(values) != count:
+        raise Refused
+    flat: list[float] = []
+    for value in values:
+        _collect(value, shape, holes, flat)
+    return np.array(flat, dtype=float).reshape(count, *shape)
+
+
+def _collect(value: Any, shape: tuple[int, ...], holes: bool, into: list[float]) -> None:
+    if shape:
+        if not isinstance(value, list) or len(value) != shape[0]:
+            raise Refused
+        for item in value:
+            _collect(item, shape[1:], holes, into)
+    elif value is None and holes:
+        into.append(math.nan)
+    elif isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST_NUMBER:
+        into.append(float(value))
+    else:
+        raise Refused
+
+
+def _table(reading: Mapping[str, Any]) -> Mapping[str, Any]:
+    table = reading.get("table")
+    if not isinstance(table, dict):
+        raise Refused
+    rows, columns = table.get("rows"), table.get("columns")
+    if not isinstance(rows, list) or not all(isinstance(row, list) for row in rows) or len(rows) > 50:
+        raise Refused
+    for cell in (cell for row in rows for cell in row[:50]):
+        if isinstance(cell, str):
+            if len(cell) > LONGEST_TEXT:
+                raise Refused
+        elif isinstance(cell, bool) or not isinstance(cell, int | float) or not abs(cell) <= LARGEST_NUMBER:
+            raise Refused
+    if columns is not None and not (isinstance(columns, list) and all(isinstance(name, str) for name in columns)):
+        raise Refused
+    ends = {end: _values({"values": [table[end]]}, 1, (4, 4))[0] for end in ("base", "tool") if end in table}
+    convention = table.get("convention", "")
+    if convention not in ("", "classic", "modified"):
+        raise Refused
+    return {"rows": rows, "columns": columns, "convention": convention, **ends}
+
+
+# Judging
+
+
+def _judge_choice(part: Part, asks: Choice, reading: Mapping[str, Any]) -> Mark:
+    choice = reading.get("choice")
+    if not isinstance(choice, str):
+        raise Refused
+    spelled = {_plain(option): option for option in asks.options}
+    chosen = spelled.get(_plain(choice))
+    if chosen is None:
+        options = ", ".join(asks.options)
+        return make_mark(part, UNREADABLE, f"It should be one of {options}, in quotation marks.")
+    if chosen == asks.right:
+        return make_mark(part, RIGHT, _sentence(asks.options[chosen]))
+    return make_mark(part, WRONG, _sentence(asks.options[chosen]))
+
+
+def _sentence(text: str) -> str:
+    return text if text.startswith(("n_", "T_", "A_")) else text[:1].upper() + text[1:]
+
+
+def _plain(text: str) -> str:
+    return "".join(c for c in text.casefold() if c.isalnum())
+
+
+def _judge_values(part: Part, asks: Valued, values: FloatArray, earlier: Mapping[str, Earlier]) -> Mark:
+    right = asks.values(part.chain)
+    if agree(values, right, asks.tolerances):
+        return make_mark(part, RIGHT)
+    if follows := _follows(part, asks, values, earlier):
+        return follows
+    slip = name_one([slip for slip, told in would_have_given(part) if _explains(told, values, right, asks)])
+    if slip:
+        return make_mark(part, WRONG, slip.says, slip.misconception.credit, slip.misconception)
+    if asks.shape == (4, 4) and (fault := improper(values)):
+        return make_mark(part, WRONG, fault, known=KNOWN["improper"])
+    if isinstance(asks, Numbers) and agree(values, right, 10 * asks.tolerances):
+        says = f"The values are close, but further off than {asks.tolerance:g}"
+        says += f" (lengths: {asks.length_tolerance:g})" if asks.shape == (4, 4) else ""
+        return make_mark(part, NEARLY, f"{says}. Round only at the end.", COARSE)
+    return make_mark(part, WRONG, describe(asks, values, right, part.chain.unit))
+
+
+def agree(values: FloatArray, right: FloatArray, tolerances: FloatArray) -> bool:
+    """Whether values are right to the tolerance, at every probe where a formula has a value.
+
+    A right formula may have none at a few points, such as tan(θ/2) at half turns.
+    """
+    there = np.isfinite(values).reshape(len(values), -1).all(axis=1)
+    if there.sum() < max(1, 0.7 * len(values)):
+        return False
+    return bool(np.all(np.abs(values - right)[there] <= np.broadcast_to(tolerances, values.shape)[there]))
+
+
+def _explains(told: FloatArray, values: FloatArray, right: FloatArray, asks: Valued) -> bool:
+    return agree(values, told, asks.tolerances) and not agree(told, right, asks.tolerances)
+
+
+def _follows(part: Part, asks: Valued, values: FloatArray, earlier: Mapping[str, Earlier]) -> Mark | None:
+    """A right step from a wrong start: at least half of the starts are right, or all that are wrong are explained."""
+    rule = part.follows
+    starts = [earlier[name] for name in rule.parts if name in earlier] if rule else []
+    if rule is None or len(starts) < len(rule.parts):
+        return None
+    arrays = [start.values for start in starts if start.values is not None and len(start.values) == len(values)]
+    wrong = [start.mark for start in starts if not start.mark.passed]
+    explained = all(mark.misconception for mark in wrong)
+    if len(arrays) < len(starts) or (2 * len(wrong) > len(starts) and not explained):
+        return None
+    if not agree(values, np.array([rule.rule(*at_probe) for at_probe in zip(*arrays, strict=True)]), asks.tolerances):
+        return None
+    names = " and ".join(start.mark.part for start in starts if start.mark.verdict != RIGHT)
+    return make_mark(part, FOLLOWS, f"It follows from your {names}, not right yet: mend that, and then this.")

@@ -1,0 +1,82 @@
+"""A mark: what one answer is worth, and why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from dhlib.grading.exercise import Part
+from dhlib.grading.misconceptions import Misconception
+
+RIGHT, FOLLOWS, NEARLY, WRONG, OPEN, UNREADABLE = "right", "follows", "nearly", "wrong", "open", "unreadable"
+#: What stands before the message.
+HEADLINES = {
+    RIGHT: "right",
+    FOLLOWS: "right, given what came before",
+    NEARLY: "nearly",
+    WRONG: "not yet",
+    OPEN: "still open",
+    UNREADABLE: "cannot be read",
+}
+#: Which part of the points an answer earns that is off by a little more than the tolerance.
+COARSE = 0.5
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What one answer is worth, and why.
+
+    Parameters
+    ----------
+    part : str
+    points, out_of : float
+    verdict : {"right", "follows", "nearly", "wrong", "open", "unreadable"}
+    message : str
+        One or two sentences; plain text, in which anything that looks like markup is text.
+    misconception : str
+        Key of the one that fits, or ``""``.
+    section : str
+        Label of the section of the book to read, or ``""``.
+    """
+
+    part: str
+    points: float
+    out_of: float
+    verdict: str
+    message: str = ""
+    misconception: str = ""
+    section: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing is left to do here."""
+        return self.verdict in (RIGHT, FOLLOWS)
+
+    def __str__(self) -> str:
+        return f"{self.part}: {HEADLINES[self.verdict]}. {self.message}".rstrip()
+
+
+def make_mark(
+    part: Part, verdict: str, message: str = "", credit: float = 0.0, known: Misconception | None = None
+) -> Mark:
+    """A mark for a part.
+
+    Parameters
+    ----------
+    part : Part
+    verdict, message : str
+    credit : float
+        Which part of the points is earned, where the answer does not pass.
+    known : Misconception, optional
+        The one that fits.
+    """
+    section = (known.section if known else "") or part.section
+    passed = verdict in (RIGHT, FOLLOWS)
+    return Mark(
+        part.id,
+        round(part.points * (1.0 if passed else credit), 2),
+        part.points,
+        verdict,
+        message,
+        known.key if known else "",
+        section if verdict in (NEARLY, WRONG) else "",
+    )

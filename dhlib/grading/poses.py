@@ -1,0 +1,80 @@
+"""What is wrong with a pose, in words that do not give the right one away."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dhlib.grading.forms import Formula, Valued
+from dhlib.scalars import FloatArray
+
+COLUMNS = ("n", "o", "a", "p")
+#: Entries rounded to three decimals still make a rotation to this.
+ROUNDED = 5e-3
+
+
+def improper(poses: FloatArray) -> str:
+    """Say in what respect matrices (…, 4, 4) are no poses; empty if they are.
+
+    Examples
+    --------
+    >>> improper(np.diag([1.0, 1.0, -1.0, 1.0])[None])
+    'The determinant of the rotation is -1: this is a mirror image, its axes are left-handed. In a pose n × o = a.'
+    """
+    poses = poses[np.isfinite(poses).all(axis=(-1, -2))]
+    if not len(poses):
+        return ""
+    if np.any(np.abs(poses[:, 3] - [0, 0, 0, 1]) > ROUNDED):
+        return "The last row of a pose is 0 0 0 1."
+    rotations = poses[:, :3, :3]
+    lengths = np.linalg.norm(rotations, axis=1)
+    for k, name in enumerate(COLUMNS[:3]):
+        off = lengths[np.argmax(np.abs(lengths[:, k] - 1)), k]
+        if abs(off - 1) > ROUNDED:
+            return f"Column {name} has length {off:.3g}: the columns of a rotation are unit vectors."
+    for j, k in ((0, 1), (1, 2), (0, 2)):
+        if np.any(np.abs(np.sum(rotations[:, :, j] * rotations[:, :, k], axis=-1)) > ROUNDED):
+            return f"Columns {COLUMNS[j]} and {COLUMNS[k]} are not at right angles, as the axes of a frame should be."
+    if np.any(np.linalg.det(rotations) < 0):
+        return (
+            "The determinant of the rotation is -1: this is a mirror image, its axes are left-handed. "
+            "In a pose n × o = a."
+        )
+    return ""
+
+
+def describe(asks: Valued, values: FloatArray, right: FloatArray, unit: str) -> str:
+    """Say the first thing that is wrong with values, without the right ones."""
+    tolerances = asks.tolerances
+    off = np.where(np.isfinite(values), np.abs(values - right), np.inf) > tolerances
+    if isinstance(asks, Formula) and np.all(np.ptp(values, axis=0) == 0) and np.any(np.ptp(right, axis=0) > 0):
+        return f"This holds no joint angle: leave {', '.join(asks.symbols)} as symbols."
+    where = ""
+    if len(values) > 1 and (fine := int(np.sum(~off.reshape(len(values), -1).any(axis=1)))) > 0:
+        where = f" At {fine} of {len(values)} sets of joint angles tried it is right, at the others it is not."
+    if asks.shape == (4, 4):
+        return _describe_pose(values, right, off, unit) + where
+    if asks.shape == ():
+        if np.all(np.abs(values + right) <= tolerances):
+            return "The value is right but for its sign."
+        return f"The value differs from the right one.{where}"
+    wrong = [str(k + 1) for k in np.flatnonzero(off.reshape(len(off), len(off[0]), -1).any(axis=(0, 2)))]
+    return f"Entry {', '.join(wrong)} differs from the right one.{where}"
+
+
+def _describe_pose(values: FloatArray, right: FloatArray, off: NDArray[np.bool_], unit: str) -> str:
+    wrong = [name for name, column in zip(COLUMNS, np.moveaxis(off[:, :3], -1, 0), strict=True) if column.any()]
+    if wrong == ["p"]:
+        distance = np.nanmax(np.linalg.norm((values - right)[:, :3, 3], axis=-1))
+        return f"The rotation is right; the position p is {distance:.3g} {unit} away from where it should be."
+    if "p" not in wrong:
+        return f"The position p is right; the rotation is not: see column{'s' if len(wrong) > 1 else ''} {_and(wrong)}."
+    fine = [name for name in COLUMNS if name not in wrong]
+    if fine:
+        right_ones = f"Column{'s' if len(fine) > 1 else ''} {_and(fine)} {'are' if len(fine) > 1 else 'is'} right"
+        return f"{right_ones}; {_and(wrong)} {'are' if len(wrong) > 1 else 'is'} not."
+    return "Neither the rotation nor the position is right yet. Compare your link matrices one by one, from the base."
+
+
+def _and(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
