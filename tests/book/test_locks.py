@@ -17,9 +17,18 @@ def locks(root: Path) -> list[Path]:
     return [*sorted((root / "requirements").glob("*.lock")), root / "package-lock.json"]
 
 
+def without_funding(npm_lock: str) -> str:
+    """Drop where authors ask for support: npm copies it into its lock, and nothing is fetched from there."""
+    lock = json.loads(npm_lock)
+    for package in lock["packages"].values():
+        package.pop("funding", None)
+    return json.dumps(lock, indent=1)
+
+
 def test_locks_hold_no_address(root: Path) -> None:
     for lock in locks(root):
-        for number, line in enumerate(lock.read_text("utf-8").splitlines(), 1):
+        text = lock.read_text("utf-8")
+        for number, line in enumerate((without_funding(text) if lock.suffix == ".json" else text).splitlines(), 1):
             assert not ADDRESS.search(line), f"{lock.name}:{number}: {line}"
 
 
