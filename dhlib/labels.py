@@ -10,6 +10,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from html import escape
+from itertools import combinations
 
 import numpy as np
 
@@ -68,7 +69,7 @@ def text_width(text: str, size: float = FONT_SIZE) -> float:
 
 
 def _letter_width(letter: str) -> float:
-    return _WIDTHS.get(letter, 0.7 if letter.isupper() else 0.58)
+    return _WIDTHS.get(letter, 0.74 if letter.isupper() else 0.64)
 
 
 def text_svg(text: str) -> str:
@@ -177,7 +178,7 @@ def beside(start: FloatArray, end: FloatArray) -> list[tuple[FloatArray, FloatAr
 GAPS = (3.0, 7.0, 13.0, 21.0, 31.0)
 
 
-def place(labels: Sequence[Label], lines: FloatArray, bounds: tuple[float, float, float, float]) -> None:
+def place(labels: Sequence[Label], lines: FloatArray, bounds: tuple[float, float, float, float]) -> float:
     """Give each label the place where it least meets lines and other labels, and never leaves the bounds.
 
     Parameters
@@ -187,9 +188,14 @@ def place(labels: Sequence[Label], lines: FloatArray, bounds: tuple[float, float
     lines : ndarray (m, 5)
         What should stay free: x and y of both ends, and half the thickness.
     bounds : (left, top, right, bottom)
+
+    Returns
+    -------
+    float
+        How crowded it is: the cost of all places, lower is better.
     """
     if not labels:
-        return
+        return 0.0
     centres, costs = zip(*(_candidates(label, lines, bounds) for label in labels), strict=True)
     halves = np.array([label.half for label in labels])
     chosen = [int(cost.argmin()) for cost in costs]
@@ -208,6 +214,10 @@ def place(labels: Sequence[Label], lines: FloatArray, bounds: tuple[float, float
             break
     for label, options, k in zip(labels, centres, chosen, strict=True):
         label.centre = options[k]
+    crowd = sum(float(cost[k]) for cost, k in zip(costs, chosen, strict=True))
+    for k, j in combinations(range(len(labels)), 2):
+        crowd += float(_overlap(labels[k].centre[None], halves[k], labels[j].centre, halves[j])[0])
+    return crowd
 
 
 def _candidates(

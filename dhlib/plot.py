@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import matplotlib as mpl
 import matplotlib.patheffects
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D, proj3d  # type: ignore[import-untyped]
@@ -32,13 +33,13 @@ LETTER_SIZE = 11.0
 def plot(
     chain: Chain,
     q: Any,
-    ax: Any = None,
+    ax: Axes | None = None,
     *,
     show: Sequence[str] = ("links", "frames", "normals", "offsets"),
     theme: str = "light",
     view: tuple[float, float] = VIEW,
     size: tuple[float, float] = (6.0, 6.0),
-) -> Any:
+) -> Axes:
     """Draw an arm at one joint vector into axes in space.
 
     Parameters
@@ -105,10 +106,10 @@ def plot(
             ax.quiver(*origin, *tip, color=colour[letter], linewidth=1.6, arrow_length_ratio=0.22, zorder=3)
             letters.at_tip(origin, origin + tip, label, letter)
     letters.write(colour)
-    return ax
+    return cast(Axes, ax)
 
 
-def svg(ax: Any) -> str:
+def svg(ax: Axes) -> str:
     """The figure of some axes as SVG whose text is text, the same on every run.
 
     Examples
@@ -119,7 +120,7 @@ def svg(ax: Any) -> str:
     """
     buffer = io.StringIO()
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "dh"}):
-        ax.figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
+        cast(Figure, ax.figure).savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
     return buffer.getvalue()
 
 

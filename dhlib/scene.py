@@ -25,7 +25,9 @@ from dhlib.view import VIEW, View
 
 #: Width of a drawing in its own units; at this width letters are 16 px, indices 12.
 WIDTH = 380.0
-MARGIN = 26.0
+#: Around the shapes, for labels; the wider one is taken where it makes the labels so much less crowded.
+MARGINS = (26.0, 48.0)
+WORTH_A_MARGIN = 40.0
 #: An arrow that is seen shorter than this points at the reader, or away.
 END_ON = 7.0
 #: What a segment may be.
@@ -286,7 +288,15 @@ class Scene:
         Sketch
         """
         below = 1.5 * FONT_SIZE if caption else 0.0
-        canvas = _Canvas(View(*(view or self.best_view())), self._points(), width, height or 1.15 * width, below)
+        seen = View(*(view or self.best_view()))
+        room = width, height or 1.15 * width
+        narrow, wide = (self._drawn(seen, room, below, margin) for margin in MARGINS)
+        crowd, easier = narrow.place_labels(), wide.place_labels()
+        canvas = wide if easier < crowd - WORTH_A_MARGIN else narrow
+        return canvas.finish(title, alt, caption)
+
+    def _drawn(self, view: View, room: tuple[float, float], below: float, margin: float) -> _Canvas:
+        canvas = _Canvas(view, self._points(), room, below, margin)
         for line, colour in self._lines:
             canvas.axis_line(line, colour)
         for joint, length, radius in self._joints:
@@ -305,7 +315,7 @@ class Scene:
             canvas.arrow(arrow)
         for frame, *_ in self._frames:
             canvas.dot(frame.origin, "", "")
-        return canvas.finish(title, alt, caption)
+        return canvas
 
     def _straight(self) -> list[Segment]:
         return [segment for segment, *_ in self._segments] + [line for line, _ in self._lines]
@@ -371,16 +381,16 @@ def _merged_arrows(frames: Sequence[tuple[Frame, str, tuple[str, str, str], bool
 class _Canvas:
     """Where shapes become strokes and letters."""
 
-    def __init__(self, view: View, points: FloatArray, width: float, height: float, below: float) -> None:
+    def __init__(self, view: View, points: FloatArray, room: tuple[float, float], below: float, margin: float) -> None:
+        width, height = room
         self.view = view
         self.below = below
         flat = view.project(points)[:, :2]
         low, high = flat.min(0), flat.max(0)
         extent = np.maximum(high - low, 1e-12)
-        room = np.array([width, height - below]) - 2 * MARGIN
-        self.scale = float((room / extent).min())
+        self.scale = float(((np.array([width, height - below]) - 2 * margin) / extent).min())
         self.width = width
-        self.height = min(height - below, float(extent[1] * self.scale) + 2 * MARGIN)
+        self.height = min(height - below, float(extent[1] * self.scale) + 2 * margin)
         self.shift = np.array([width, self.height]) / 2 - self.scale * (low + high) / 2
         self.strokes: list[tuple[int, float, str]] = []
         self.lines: list[tuple[float, float, float, float, float]] = []
@@ -547,9 +557,12 @@ class _Canvas:
         )
         self.stroke(layer, depth, f'<path class="{_join(colour, "h")}" d="{_path(points)}z"/>')
 
+    def place_labels(self) -> float:
+        """Find the places of all labels; return how crowded it is."""
+        lines = np.array(self.lines).reshape(-1, 5)
+        return place(self.labels, lines, (2.0, 2.0, self.width - 2, self.height - 2))
+
     def finish(self, title: str, alt: str, caption: str) -> Sketch:
-        lines = np.array(self.lines) if self.lines else np.zeros((0, 5))
-        place(self.labels, lines, (2.0, 2.0, self.width - 2, self.height - 2))
         letters = "".join(
             f'<text{_class(label.colour)} x="{_number(label.centre[0])}" '
             f'y="{_number(label.centre[1] + 0.33 * label.size)}">{text_svg(label.text)}</text>'

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -27,8 +28,8 @@ ARMS = [
 ]
 
 
-def words(ax: object) -> list[str]:
-    found = [re.sub(r"[${}]", "", word) for text in ax.texts for word in text.get_text().split(", ")]  # type: ignore[attr-defined]
+def words(ax: Any) -> list[str]:
+    found = [re.sub(r"[${}]", "", word) for text in ax.texts for word in text.get_text().split(", ")]
     return [word for word in found if word]
 
 
@@ -42,21 +43,35 @@ def test_every_frame_and_length_is_lettered(chain: Chain) -> None:
     assert sorted(word for word in seen if word[0] == "a") == sorted(lengths)
 
 
-@pytest.mark.parametrize("chain", ARMS)
-def test_labels_stand_apart(chain: Chain) -> None:
-    ax = plot(chain, GENERIC[: chain.n])
+def hits(ax: Any) -> list[tuple[str, str]]:
+    """Labels of which one covers more than a tenth of another, as matplotlib sets them."""
     renderer = FigureCanvasAgg(ax.figure).get_renderer()
-    ax.figure.draw_without_rendering()
-    ax.figure.canvas.draw()
-    texts = [text for text in ax.texts if text.get_text()]
-    boxes = [text.get_window_extent(renderer) for text in texts]
-    hits = []
-    for (a, one), (b, other) in itertools.combinations(zip(texts, boxes, strict=True), 2):
-        width = min(one.x1, other.x1) - max(one.x0, other.x0)
-        height = min(one.y1, other.y1) - max(one.y0, other.y0)
-        if min(width, height) > 0 and width * height > 0.25 * min(one.width * one.height, other.width * other.height):
-            hits.append((a.get_text(), b.get_text()))
-    assert not hits
+    boxes = []
+    for text in ax.texts:
+        x, y, _ = proj3d.proj_transform(*text.get_position_3d(), ax.get_proj())
+        size = text.get_window_extent(renderer)
+        centre, half = ax.transData.transform((x, y)), np.array([size.width, size.height]) / 2
+        boxes.append((text.get_text(), centre - half, centre + half))
+    found = []
+    for (one, low, high), (other, lower, higher) in itertools.combinations(boxes, 2):
+        shared = np.minimum(high, higher) - np.maximum(low, lower)
+        smaller = min(np.prod(high - low), np.prod(higher - lower))
+        if shared.min() > 0 and shared.prod() > 0.1 * smaller:
+            found.append((one, other))
+    return found
+
+
+@pytest.mark.parametrize("q", [[0.0] * 7, GENERIC], ids=["zero", "generic"])
+@pytest.mark.parametrize("chain", ARMS)
+def test_labels_stand_apart(chain: Chain, q: list[float]) -> None:
+    assert not hits(plot(chain, q[: chain.n]))
+
+
+def test_labels_that_collide_would_be_found() -> None:
+    ax = plot(robots.planar(2), [0, 0])
+    one, other = ax.texts[:2]
+    one.set_position_3d(other.get_position_3d())
+    assert hits(ax) == [(one.get_text(), other.get_text())]
 
 
 def test_parts_can_be_left_out() -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dhlib import Axis, Chain, DHError, Prismatic, Revolute, Rx, Ry, Rz, Tx, Ty, classic, modified, palette, robots
+from dhlib import Axis, Chain, DHError, Prismatic, Revolute, Ry, Rz, Tx, Ty, classic, modified, palette, robots
 from dhlib.drawing import Arc, draw
 from dhlib.labels import Label, place
 from dhlib.scene import Scene, Sketch
@@ -408,7 +408,6 @@ def test_a_drawing_can_be_saved(tmp_path: Path) -> None:
 def test_a_drawing_shows_itself() -> None:
     drawing = right_handed()
     assert drawing._repr_html_() == drawing._repr_svg_() == str(drawing) == drawing.svg()
-    assert Rx(0).shape == (4, 4)
 
 
 def test_dhlib_does_not_import_what_it_may_not_need() -> None:
