@@ -157,11 +157,34 @@ def test_an_edit_of_the_library_reaches_the_page(copy: Path) -> None:
         assert built.returncode == 0, built.stdout
         return built.stdout
 
-    assert "Executing notebook" in build("0.1234")
+    assert "page.md: executed" in build("0.1234")
     assert "0.1234" in page.read_text("utf-8")
-    assert "Executing notebook" in build("0.5678")
+    assert "page.md: executed" in build("0.5678")
     assert "0.5678" in page.read_text("utf-8")
     assert "0.1234" not in page.read_text("utf-8")
-    assert "Executing notebook" not in build("0.5678")
-    assert "Executing notebook" not in build("0.1234"), "the outputs for the old content are still known"
+    assert "page.md: executed" not in build("0.5678")
+    assert "page.md: executed" not in build("0.1234"), "the outputs for the old content are still known"
     assert "0.1234" in page.read_text("utf-8")
+
+
+MEETING = """```{{code-cell}}
+import pathlib, time
+pathlib.Path("{here}.txt").touch()
+deadline = time.monotonic() + 60
+while not pathlib.Path("{there}.txt").exists():
+    assert time.monotonic() < deadline, "the other chapter did not run meanwhile"
+    time.sleep(0.1)
+```
+"""
+
+
+def test_chapters_run_side_by_side(copy: Path) -> None:
+    """Each of two chapters waits until the other has begun: one after the other they would never end."""
+    add_page(copy, MEETING.format(here="page", there="second"))
+    header = (copy / "book" / "page.md").read_text("utf-8").split("```")[0]
+    (copy / "book" / "second.md").write_text(header + MEETING.format(here="second", there="page"), "utf-8")
+    (copy / "_toc.yml").write_text(
+        "format: jb-book\nroot: book/page\nchapters:\n  - file: book/second\n", encoding="utf-8"
+    )
+    built = build_book(copy, copy, environment={"PYTHONPATH": str(copy)})
+    assert built.returncode == 0, built.stdout
