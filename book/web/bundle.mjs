@@ -1,0 +1,17 @@
+// Bundle the figures: each a classic script of its own, so that it also runs from file://.
+// Arguments: the folder to write into, and the names of the figures.
+import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
+
+const [into, ...names] = process.argv.slice(2);
+await build({
+  entryPoints: names.map((name) => fileURLToPath(new URL(`${name}.js`, import.meta.url))),
+  outdir: into,
+  bundle: true,
+  minify: true,
+  format: "iife",
+  target: "es2022",
+  charset: "utf8",
+  legalComments: "none",
+  loader: { ".css": "text" },
+});
