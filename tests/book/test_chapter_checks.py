@@ -1,0 +1,60 @@
+"""A reader who changes a sign in a chapter's code sees a check fail: the checks on the page can tell."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+CELL = re.compile(r"^```\{code-cell\}[^\n]*\n(.*?)^```", re.DOTALL | re.MULTILINE)
+
+CHANGES = {
+    "transforms": [
+        ("[sp.cos(theta), sp.sin(theta), 0]", "[sp.cos(theta), -sp.sin(theta), 0]"),
+        ('[[0, 0, 1], [1, 0, 0], [0, 1, 0]]),\n    "y up"', '[[0, 0, 1], [1, 0, 0], [0, -1, 0]]),\n    "y up"'),
+        ("go_then_turn = forward @ left", "go_then_turn = left @ forward"),
+        ("as_seen_from_outside = T @ M @ inverse(T)", "as_seen_from_outside = inverse(T) @ M @ T"),
+        ("back[:3, 3] = -R.T @ p", "back[:3, 3] = -p"),
+        ("cube_in_camera = Ty(-200)", "cube_in_camera = Ty(200)"),
+        ("product = product @ arm.A(i, q)", "product = arm.A(i, q) @ product"),
+        ("if np.linalg.det(R) < 0:", "if np.linalg.det(R) < -2:"),
+        ("four_steps = Rz(theta) * Tz(d)", "four_steps = Rz(theta) * Tx(d)"),
+    ],
+    "quickshot": [
+        ("Axis([180, 28, 100], z)", "Axis([180, 20, 100], z)"),
+        ("frame(x, y, [20, 0, 100])", "frame(x, -y, [20, 0, 100])"),
+        ("row1 = Revolute(d=100, a=20, alpha=-90", "row1 = Revolute(d=100, a=20, alpha=+90"),
+        ("Rz(theta2 + theta3)\n", "Rz(theta2 - theta3)\n"),
+        ("h = 100 - 160 * sp", "h = 100 + 160 * sp"),
+        ("s1 * c4 * (s2 * c3 + c2 * s3) + c1 * s4,\n", "s1 * c4 * (c2 * c3 - s2 * s3) + c1 * s4,\n"),
+        ("X = Z @ arm.T(0, 4, angles) @ E", "X = E @ arm.T(0, 4, angles) @ Z"),
+        ("Revolute(d=28, a=160, alpha=0)", "Revolute(d=-28, a=160, alpha=0)"),
+        ("Revolute(d=0, a=160, alpha=0, offset=180", "Revolute(d=0, a=160, alpha=0, offset=90"),
+        ("Revolute(d=-28, a=0, alpha=-90", "Revolute(d=28, a=0, alpha=-90"),
+    ],
+}
+
+
+def cells(chapter: str) -> list[str]:
+    """Return the code of a chapter, cell by cell, without options."""
+    return [re.sub(r"^:tags:.*\n", "", code) for code in CELL.findall(chapter)]
+
+
+def run(chapter: str) -> None:
+    """Run the code of a chapter."""
+    names: dict[str, Any] = {}
+    for code in cells(chapter):
+        exec(compile(code, "<chapter>", "exec"), names)
+
+
+@pytest.mark.parametrize("chapter", CHANGES)
+def test_a_changed_sign_fails(root: Path, chapter: str, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (root / "book" / f"{chapter}.md").read_text("utf-8")
+    run(text)
+    for right, changed in CHANGES[chapter]:
+        assert text.count(right) == 1, f"book/{chapter}.md has {text.count(right)} places with {right!r}"
+        with pytest.raises(AssertionError):
+            run(text.replace(right, changed))
+    capsys.readouterr()
