@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+import subprocess
+import threading
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,7 @@ import chromium
 import pytest
 from building import build_book
 from filelock import FileLock
+from serve import server
 
 ROOT = Path(__file__).parent.parent
 
@@ -22,28 +25,62 @@ def root() -> Path:
 
 
 @pytest.fixture(scope="session")
-def site(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
-    """The folder of the built site: built once, whatever the number of test processes."""
+def built_once(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Callable[..., Path]:
+    """Build a site under a name, once, whatever the number of test processes; returns its folder."""
     base = tmp_path_factory.getbasetemp()
-    shared = (base if worker_id == "master" else base.parent) / "book"
-    shared.mkdir(exist_ok=True)
-    with FileLock(shared / "lock"):
-        done = shared / "built"
-        if not done.exists():
-            built = build_book(ROOT, shared)
-            if built.returncode != 0:
-                done.write_text(built.stdout)
-            else:
-                done.touch()
-    if failure := done.read_text():
-        pytest.fail(f"The book does not build:\n{failure}")
-    return shared / "_build" / "html"
+    base = base if worker_id == "master" else base.parent
+
+    def build(name: str, work: Callable[[Path], subprocess.CompletedProcess[str]]) -> Path:
+        shared = base / name
+        shared.mkdir(exist_ok=True)
+        with FileLock(shared / "lock"):
+            done = shared / "built"
+            if not done.exists():
+                built = work(shared)
+                done.write_text(built.stdout if built.returncode else "")
+        if failure := done.read_text():
+            pytest.fail(f"The book does not build:\n{failure}")
+        return shared / "_build" / "html"
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def site(built_once: Callable[..., Path]) -> Path:
+    """The folder of the built site."""
+    return built_once("book", lambda into: build_book(ROOT, into))
+
+
+@pytest.fixture(scope="session")
+def address(site: Path) -> Iterator[str]:
+    """Where the site is served."""
+    httpd = server(site)
+    threading.Thread(target=httpd.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{httpd.server_address[1]}"
+    httpd.shutdown()
+
+
+@pytest.fixture(scope="session")
+def questions_site(built_once: Callable[..., Path]) -> Path:
+    """The folder of a site of one page, with one question of each kind."""
+
+    def build(into: Path) -> subprocess.CompletedProcess[str]:
+        copy = copy_sources(into / "copy")
+        shutil.copy(ROOT / "tests/book/pages/questions.md", copy / "book" / "questions.md")
+        (copy / "_toc.yml").write_text("format: jb-book\nroot: book/questions\n", "utf-8")
+        return build_book(copy, into, environment={"PYTHONPATH": str(copy)})
+
+    return built_once("questions", build)
 
 
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
     """A copy of what the book is built from, to be changed by a test."""
-    copy = tmp_path / "copy"
+    return copy_sources(tmp_path / "copy")
+
+
+def copy_sources(copy: Path) -> Path:
+    """Copy what the book is built from."""
     copy.mkdir()
     ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "*.png")
     for name in ("dhlib", "book", "exercises", "requirements"):

@@ -8,19 +8,23 @@ A cell glues a value under a name, and the text quotes the name:
     glue_table("rows", rows, header)               ```{glue} rows
     glue_figure("frames", drawing, alt="…")        ```{glue:figure} frames
                                                    :name: fig-frames
+    question("reach", arm_reach, decimals=2, …)    ```{dh-question} reach
 """
 
 from bookkit.figures import glue_figure, inline_svg, show_figure
 from bookkit.glue import glue_math, glue_number, glue_table
+from bookkit.questions import choice, question
 from bookkit.values import latex, text
 
 __all__ = [
+    "choice",
     "glue_figure",
     "glue_math",
     "glue_number",
     "glue_table",
     "inline_svg",
     "latex",
+    "question",
     "show_figure",
     "text",
 ]

@@ -115,7 +115,8 @@ def glyph_sheet(html: str, glyphs: dict[str, str]) -> str:
     return f'<svg class="glyphs" width="0" height="0" aria-hidden="true"><defs>{paths}</defs></svg>' if used else ""
 
 
-def _set(translator: HTML5Translator, tex: str, node: nodes.Element, *, display: bool) -> str:
+def set_formula(translator: HTML5Translator, tex: str, node: nodes.Element, *, display: bool) -> str:
+    """Return a formula as HTML; one that MathJax refuses is a warning."""
     typesetter: Typesetter = translator.builder.app.typesetter  # type: ignore[attr-defined]
     formula = typesetter.set(tex, display=display)
     if formula["error"]:
@@ -126,7 +127,7 @@ def _set(translator: HTML5Translator, tex: str, node: nodes.Element, *, display:
 def visit_inline(translator: HTML5Translator, node: nodes.math) -> None:
     """Write a formula within a line."""
     translator.body.append(translator.starttag(node, "span", "", CLASS="math notranslate nohighlight"))
-    translator.body.append(_set(translator, node.astext(), node, display=False) + "</span>")
+    translator.body.append(set_formula(translator, node.astext(), node, display=False) + "</span>")
     raise nodes.SkipNode
 
 
@@ -134,7 +135,7 @@ def visit_display(translator: HTML5Translator, node: nodes.math_block) -> None:
     """Write a formula of its own, with its number if it has one."""
     translator.body.append(translator.starttag(node, "div", CLASS="math notranslate nohighlight"))
     tex = node.astext() if node["nowrap"] else wrap_displaymath(node.astext(), None, False)
-    translator.body.append(_set(translator, tex.strip(), node, display=True))
+    translator.body.append(set_formula(translator, tex.strip(), node, display=True))
     if node["number"]:
         translator.body.append(f'<span class="eqno">({get_node_equation_number(translator, node)})')
         translator.add_permalink_ref(node, "Link to this equation")

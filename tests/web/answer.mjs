@@ -4,4 +4,4 @@ import { pathToFileURL } from "node:url";
 
 const module = await import(pathToFileURL(process.argv[2]));
 const calls = JSON.parse(readFileSync(0, "utf-8"));
-console.log(JSON.stringify(calls.map(([name, ...given]) => module[name](...given))));
+console.log(JSON.stringify(await Promise.all(calls.map(([name, ...given]) => module[name](...given)))));

@@ -1,0 +1,122 @@
+"""Seal the answers of a question, so that they do not stand in the page.
+
+What the reader enters is the key. Each entry of an answer is a number on a line that is cut into cells, and the
+numbers of the cells, joined, are a password. PBKDF2 makes of it the key of an AES-GCM record with what there is to
+say. Where the cuts lie is public, and so chosen that every foreseen answer stands clear of them: an answer as exact
+as was asked for opens its record. The record itself holds the exact values, to compare with.
+
+This keeps answers from the source and from a glance. A single number has few digits, and whoever lets a computer
+try them all will find it: questions are for learning, never for marks. ``book/web/questions.js`` opens records.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import hmac
+import json
+import math
+import random
+from collections.abc import Sequence
+from typing import Any
+
+from cryptography.hazmat.primitives.ciphers.aead import AESGCM
+
+ROUNDS = 300_000
+CELL = 8.0
+"""Width of a cell, in tolerances."""
+CLEAR = 1.5
+"""How far from a cut every foreseen answer stands, in tolerances."""
+
+Values = Sequence[float]
+
+
+def tolerance(decimals: int) -> float:
+    """Return how far an answer may be off that is right in `decimals` decimals."""
+    return 0.5 * 10.0**-decimals * (1 + 1e-6)
+
+
+def cell(value: float, start: float, width: float, period: float | None) -> int:
+    """Return the number of the cell that holds a value."""
+    beyond = value - start
+    return math.floor((beyond if period is None else beyond - period * math.floor(beyond / period)) / width)
+
+
+def is_clear(value: float, start: float, width: float, period: float | None, clear: float) -> bool:
+    """Say whether a value stands clear of every cut."""
+    return cell(value - clear, start, width, period) == cell(value + clear, start, width, period)
+
+
+def cuts(columns: Sequence[Values], decimals: int, periods: Sequence[float | None], seed: str) -> dict[str, Any]:
+    """Return where to cut the line of each entry: ``width``, and a ``start`` for each.
+
+    Parameters
+    ----------
+    columns : sequence of sequences of float
+        For each entry, the values foreseen.
+    decimals : int
+        How many are asked for.
+    periods : sequence of float or None
+        For each entry.
+    seed : str
+        Makes the choice repeatable.
+    """
+    within, choose = tolerance(decimals), random.Random(seed)
+    width = CELL * within
+    while True:
+        starts = []
+        for values, period in zip(columns, periods, strict=True):
+            draws = (round(-choose.uniform(0, period or width), decimals + 3) for _ in range(2000))
+            start = next((s for s in draws if all(is_clear(v, s, width, period, CLEAR * within) for v in values)), None)
+            if start is None:
+                break
+            starts.append(start)
+        else:
+            return {"width": width, "starts": starts}
+        width *= 2
+
+
+def derive(password: str, salt: bytes) -> bytes:
+    """Return the key that a password stands for."""
+    return hashlib.pbkdf2_hmac("sha256", password.encode(), salt, ROUNDS)
+
+
+def seal(question: dict[str, Any], seed: str) -> dict[str, Any]:
+    """Return what the page may hold of a question.
+
+    Parameters
+    ----------
+    question : dict
+        What ``bookkit.question`` or ``bookkit.choice`` keeps; what its answers say is HTML by now.
+    seed : str
+        The page and the name of the question: the same question is sealed in the same way each time.
+    """
+    salt = hashlib.sha256(f"salt {seed}".encode()).digest()[:16]
+    public: dict[str, Any] = {"rounds": ROUNDS, "salt": _text(salt), "kind": question["kind"]}
+    answers = question["answers"]
+    if question["kind"] == "number":
+        periods = question["periods"]
+        columns = list(zip(*(answer["value"] for answer in answers), strict=True))
+        lines = cuts(columns, question["decimals"], periods, seed)
+        public |= {"tolerance": tolerance(question["decimals"]), "periods": periods, "unit": question["unit"], **lines}
+        passwords = [
+            ",".join(
+                str(cell(value, start, lines["width"], period))
+                for value, start, period in zip(answer["value"], lines["starts"], periods, strict=True)
+            )
+            for answer in answers
+        ]
+    else:
+        passwords = [",".join(map(str, answer["value"])) for answer in answers]
+    records, plains = [], [json.dumps(answer).encode() for answer in answers]
+    length = max(map(len, plains))
+    for plain, password in zip(plains, passwords, strict=True):
+        key, padded = derive(password, salt), plain.ljust(length)  # nor may their length tell which is right
+        nonce = hmac.new(key, padded, "sha256").digest()[:12]  # of the content: no nonce serves twice
+        records.append(_text(nonce + AESGCM(key).encrypt(nonce, padded, None)))
+    public["records"] = sorted(records)  # nor their order
+    return public
+
+
+def _text(raw: bytes) -> str:
+    return base64.b64encode(raw).decode()
