@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import html
+import json
 import math
 import posixpath
 import re
@@ -26,6 +27,7 @@ from sphinx.errors import ExtensionError
 from sphinx.util.docutils import SphinxDirective
 
 from dhlib import Chain, DHError, Revolute, robots
+from dhlib.drawing import draw
 from dhlib.export import chain_json
 from dhlib.sketch import link, sketch
 
@@ -37,6 +39,8 @@ if TYPE_CHECKING:
     from sphinx.writers.html5 import HTML5Translator
 
 SOURCES = ROOT / "book" / "web"
+#: The scripts of a kind of figure: its own first, then what that one loads when it is needed.
+SCRIPTS = {"link": ("link",), "robot": ("robot", "space"), "place": ("place",)}
 FIGURE = re.compile(r"<dh-([a-z]+) ")
 
 
@@ -148,7 +152,7 @@ class DhRobot(LiveFigure):
     option_spec: ClassVar[dict[str, Callable[[str], Any]]] = {
         "name": directives.unchanged_required,
         "alt": directives.unchanged_required,
-        "convention": convention,
+        "convention": lambda argument: directives.choice(argument, ("classic", "modified", "both")),
         "arguments": directives.unchanged_required,
         "q": directives.unchanged_required,
         "elbow": directives.flag,
@@ -170,18 +174,24 @@ class DhRobot(LiveFigure):
     def data(self) -> dict[str, str]:
         """Return the attributes of the element: the arm in both conventions."""
         chain = self.chain()
-        return {
+        classic = chain.to_classic()
+        data = {
             "convention": self.options.get("convention", chain.convention),
-            "classic": chain_json(chain.to_classic()),
+            "classic": chain_json(classic),
             "modified": chain_json(chain.to_modified()),
-            "q": " ".join(map(repr, self.pose(chain))),
-        } | ({"elbow": ""} if "elbow" in self.options else {})
+            "q": json.dumps(self.pose(chain)),
+        } | bodies(classic)
+        if "elbow" in self.options:
+            if chain.kinds != "RRRRRRR":
+                raise ValueError(f"{chain.name} has no elbow circle: that takes seven revolute joints.")
+            data["elbow"] = ""
+        return data
 
     def still(self) -> tuple[str, str]:
         """Return the arm at its first q."""
         chain = self.chain()
         wanted = self.options.get("convention", chain.convention)
-        shown = chain.to_classic() if wanted == "classic" else chain.to_modified()
+        shown = chain.to_modified() if wanted == "modified" else chain.to_classic()
         drawing = sketch(shown, self.pose(chain))
         return drawing.svg(), drawing.alt
 
@@ -205,7 +215,8 @@ class DhPlace(LiveFigure):
 
     def data(self) -> dict[str, str]:
         """Return the attributes of the element: the arm, of which the figure shows the axes alone."""
-        return {"chain": chain_json(self.chain())}
+        chain = self.chain()
+        return {"chain": chain_json(chain)} | bodies(chain)
 
     def still(self) -> tuple[str, str]:
         """Return the arm with its axes, without frames."""
@@ -229,6 +240,19 @@ def read_robot(name: str, arguments: str = "") -> Chain:
         given["n"] = int(given["n"])
     chain: Chain = getattr(robots, name)(**given)
     return chain
+
+
+def bodies(chain: Chain) -> dict[str, str]:
+    """Return how large an arm is, and where on its axis the body of each joint sits, as dhlib draws it at q = 0.
+
+    The heights count from the point that ``chain.axes()`` names, in the sense of the axis.
+    """
+    figure = draw(chain, [0.0] * chain.n)
+    heights = [
+        float((joint.centre - axis.point) @ axis.direction)
+        for joint, axis in zip(figure.joints, chain.axes(), strict=True)
+    ]
+    return {"heights": json.dumps(heights), "size": json.dumps(figure.size)}
 
 
 def edition() -> str:
@@ -261,10 +285,11 @@ def visit_other(translator: Any, node: live_figure) -> None:
 
 def bundle(into: Path, kinds: set[str]) -> None:
     """Write the scripts of some kinds of figures."""
+    names = sorted(name for kind in kinds for name in SCRIPTS[kind])
     if not (ROOT / "node_modules" / "esbuild").is_dir():
         raise ExtensionError("esbuild is missing: run `make book`, or `npm ci`.")
     done = subprocess.run(
-        [node_program(), str(SOURCES / "bundle.mjs"), str(into), *sorted(kinds)],
+        [node_program(), str(SOURCES / "bundle.mjs"), str(into), *names],
         cwd=ROOT,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,

@@ -108,16 +108,17 @@ export class Slider {
     this.range = make("input", { type: "range", id, min: low, max: high, step, input: () => this.#take(this.range, false), change: () => this.#take(this.range, true) });
     this.field = make("input", { type: "number", min: low, max: high, step, inputmode: "decimal", input: () => this.#take(this.field, false), change: () => this.#take(this.field, true) });
     this.element = make("div", { class: `slider ${style}` },
-      make("label", { for: id }, this.symbol, " ", make("span", { class: "word" }, word)),
+      make("label", { for: id }, this.symbol, " ", (this.word = make("span", { class: "word" }))),
       this.range, make("span", { class: "field" }, this.field, make("span", { class: "unit", "aria-hidden": "true" }, unit)));
-    this.rename(symbol, word, heard);
+    this.rename(symbol, word);
     this.set(value);
   }
 
-  rename(symbol, word, heard = this.heard) {
+  rename(symbol, word) {
     this.symbol.innerHTML = html(symbol);
+    this.word.textContent = word;
     this.range.setAttribute("aria-label", `${spoken(symbol)}, ${word}`);
-    this.field.setAttribute("aria-label", `${spoken(symbol)}, ${word}, ${heard}`);
+    this.field.setAttribute("aria-label", `${spoken(symbol)}, ${word}, ${this.heard}`);
   }
 
   #take(input, done) {

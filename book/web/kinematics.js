@@ -125,6 +125,21 @@ export function motion({ point, direction, kind }, q) {
 /** The pose of the end when every joint moves its part of the arm. */
 export const productOfExponentials = (lines, end, q) => multiply(...lines.map((line, k) => motion(line, q[k])), end);
 
+/**
+ * The circle on which the elbow of an arm with seven joints can go round while the hand rests: its centre, its radius,
+ * and the axis from shoulder to wrist. Shoulder, elbow and wrist are where axes 2 and 3, 3 and 4, 5 and 6 meet.
+ */
+export function elbowCircle(chain, q) {
+  const poses = frames(chain, q);
+  const onAxis = chain.convention === "classic" ? poses.slice(0, -1) : poses.slice(1);
+  const lines = onAxis.map((pose) => ({ point: origin(pose), direction: column(pose, 2) }));
+  const meet = (i, j) => commonNormal(lines[i - 1], lines[j - 1]).before;
+  const [shoulder, elbow, wrist] = [meet(2, 3), meet(3, 4), meet(5, 6)];
+  const axis = unit(subtract(wrist, shoulder));
+  const centre = foot({ point: shoulder, direction: axis }, elbow);
+  return { centre, axis, elbow, radius: length(subtract(elbow, centre)) };
+}
+
 // Lines in space
 
 /** The point of a line that is nearest to a given one. */

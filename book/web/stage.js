@@ -3,7 +3,7 @@
 // Each picture is told piece by piece between begin() and end(). A piece keeps its element from picture to picture,
 // labels look for a free place near their own, and the camera moves only when it must.
 
-import { add, along, cross, dot, scale, subtract, unit } from "./kinematics.js";
+import { add, along, cross, dot, length, scale, subtract, unit } from "./kinematics.js";
 import { DEGREE, pieces } from "./words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -138,10 +138,16 @@ export class Stage {
   }
 
   /** An arrow with its letter at the tip; one that is seen end on becomes a dot in a ring, or a cross. */
-  arrow(key, start, end, style, text) {
+  arrow(key, start, end, style, text, aside = 0) {
     const [tail, tip] = [this.see(start), this.see(end)];
     const [dx, dy] = [tip[0] - tail[0], tip[1] - tail[1]];
     const seen = Math.hypot(dx, dy);
+    if (aside && seen > END_ON) {
+      for (const end_ of [tail, tip]) {
+        end_[0] -= (aside * dy) / seen;
+        end_[1] += (aside * dx) / seen;
+      }
+    }
     if (seen < END_ON) {
       const cross_ = dot(this.toward, subtract(end, start)) > 0 ? "" : "M-3.2-3.2 3.2 3.2M-3.2 3.2 3.2-3.2";
       this.piece("frames", `${key} ring`, "path", {
@@ -161,6 +167,43 @@ export class Stage {
     if (text) this.label(`${key} label`, text, style, around(tip, [ux, uy]));
   }
 
+  /** Arrows of several frames: those that coincide are drawn once, with all their indices; of different letters, side by side. */
+  arrows(listed) {
+    const groups = [];
+    for (const arrow of listed) {
+      const same = ([other]) => length(subtract(other.start, arrow.start)) < 1e-6 * arrow.size && length(subtract(other.direction, arrow.direction)) < 1e-6;
+      const group = groups.find(same);
+      if (group) group.push(arrow);
+      else groups.push([arrow]);
+    }
+    for (const group of groups) {
+      const letters = [...new Set(group.map(({ letter }) => letter))];
+      letters.forEach((letter, k) => {
+        const mine = group.filter((arrow) => arrow.letter === letter);
+        const [{ key, start, direction, style }] = mine;
+        const size = Math.max(...mine.map((arrow) => arrow.size));
+        this.arrow(key, start, along(start, size, direction), `${letter} ${style}`, `${letter}_{${indices(mine)}}`, 4 * (k - (letters.length - 1) / 2));
+      });
+    }
+  }
+
+  /** A dot at a point. */
+  dot(key, p, style = "") {
+    const [cx, cy] = this.see(p).map((value) => value.toFixed(1));
+    this.piece("frames", key, "circle", { class: `origin ${style}`, cx, cy, r: 3.4 });
+  }
+
+  /** A whole circle in space. */
+  circle(layer, key, centre, axis, radius, style) {
+    const first = unit(cross(axis, Math.abs(axis[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));
+    const second = cross(axis, first);
+    const points = Array.from({ length: 72 }, (_, k) => {
+      const turned = (k * Math.PI) / 36;
+      return this.see(add(centre, add(scale(radius * Math.cos(turned), first), scale(radius * Math.sin(turned), second))));
+    });
+    this.path(layer, key, points, style, { closed: true, free: true });
+  }
+
   /** A frame: arrows x, y, z with their letters. */
   frame(key, pose, size, style, index) {
     const start = pose.slice(0, 3).map((row) => row[3]);
@@ -168,8 +211,7 @@ export class Stage {
       const direction = pose.slice(0, 3).map((row) => row[k]);
       this.arrow(`${key} ${letter}`, start, along(start, size, direction), `${letter} ${style}`, index && `${letter}_{${index}}`);
     });
-    const [cx, cy] = this.see(start).map((value) => value.toFixed(1));
-    this.piece("frames", `${key} origin`, "circle", { class: `origin ${style}`, cx, cy, r: 3.4 });
+    this.dot(`${key} origin`, start, style);
   }
 
   /** An angle, from the direction `from` about `axis`: a wedge, an arc with a head, and its letter. */
@@ -252,6 +294,20 @@ export class Stage {
       }
     }
   }
+}
+
+/** The indices of frames, runs of them as "2–4"; what distinguishes conventions follows. */
+function indices(arrows) {
+  const suffixes = [...new Set(arrows.map(({ suffix = "" }) => suffix))];
+  return suffixes.map((suffix) => {
+    const numbers = [...new Set(arrows.filter((arrow) => (arrow.suffix ?? "") === suffix).map(({ index }) => Number(index)))].sort((i, j) => i - j);
+    const runs = [];
+    for (const number of numbers) {
+      if (runs.length && runs.at(-1).at(-1) === number - 1) runs.at(-1).push(number);
+      else runs.push([number]);
+    }
+    return runs.map((run) => (run.length > 2 ? `${run[0]}–${run.at(-1)}${suffix}` : run.map((number) => number + suffix).join(","))).join(",");
+  }).join(",");
 }
 
 /** Places about a tip, best straight ahead, then turning away to either side. */
