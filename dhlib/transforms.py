@@ -162,6 +162,10 @@ def inverse(pose: Pose) -> Pose:
     ----------
     pose : ndarray (…, 4, 4) or sympy Matrix (4, 4)
 
+    Returns
+    -------
+    ndarray (…, 4, 4) or sympy Matrix (4, 4)
+
     Examples
     --------
     >>> import numpy as np
