@@ -38,11 +38,11 @@ MARKUP = re.compile(
 )
 
 
-class QuestionNode(nodes.General, nodes.Element):
+class QuestionNode(nodes.General, nodes.Element):  # type: ignore[misc]
     """A question: its text, then its options if it is a choice."""
 
 
-class OptionNode(nodes.General, nodes.Element):
+class OptionNode(nodes.General, nodes.Element):  # type: ignore[misc]
     """One option of a choice."""
 
 

@@ -37,7 +37,7 @@ def listed(root: Path) -> dict[str, Path]:
 def unexpected(files: set[str], pages: dict[str, Path]) -> set[str]:
     """Return the files of a site that nothing accounts for."""
     allowed = {f"{name}.html" for name in pages} | OF_SPHINX | EXTRAS
-    allowed |= {f"_sources/{name}{source.suffix}" for name, source in pages.items()}
+    allowed |= {f"notebooks/{source.stem}.ipynb" for source in pages.values() if source.parent.name == "book"}
     static = re.compile(
         r"_static/.*\.(css|js|svg|png|woff2|LICENSE\.txt)|_images/[\w.-]+\.(svg|png)|_downloads/[0-9a-f]{32}/[\w.-]+"
     )
