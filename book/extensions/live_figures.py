@@ -277,9 +277,9 @@ def visit_html(translator: HTML5Translator, node: live_figure) -> None:
     raise nodes.SkipNode
 
 
-def visit_other(translator: Any, node: live_figure) -> None:
-    """Write what the figure shows, where nothing can be drawn."""
-    translator.body.append(node["alt"])
+def visit_latex(translator: Any, node: live_figure) -> None:
+    """Write what the figure shows: LaTeX draws no SVG."""
+    translator.body.append(translator.encode(node["alt"]))
     raise nodes.SkipNode
 
 
@@ -314,8 +314,7 @@ def bundle_what_is_used(app: Sphinx, exception: Exception | None) -> None:
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
-    others = dict.fromkeys(("latex", "text", "man", "texinfo", "gettext"), (visit_other, None))
-    app.add_node(live_figure, html=(visit_html, None), **others)  # type: ignore[arg-type]
+    app.add_node(live_figure, html=(visit_html, None), latex=(visit_latex, None))
     for directive in (DhLink, DhRobot, DhPlace):
         app.add_directive(f"dh-{directive.kind}", directive)
     app.connect("build-finished", bundle_what_is_used)

@@ -117,7 +117,6 @@ export class Slider {
   rename(symbol, word) {
     this.symbol.innerHTML = html(symbol);
     this.word.textContent = word;
-    this.range.setAttribute("aria-label", `${spoken(symbol)}, ${word}`);
     this.field.setAttribute("aria-label", `${spoken(symbol)}, ${word}, ${this.heard}`);
   }
 

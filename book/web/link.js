@@ -98,8 +98,8 @@ class DhLink extends LiveFigure {
       this.rows.dataset.order = this.state.convention;
     }
     this.#steps().forEach(({ parameter, axis, turns }, k) => {
-      this.chips[k].innerHTML = html(`${turns ? "R" : "T"}_${axis}(${this.symbol(parameter)})`);
-      this.chips[k].setAttribute("aria-label", `Step ${k + 1}: ${turns ? "rotate about" : "shift along"} ${axis} by ${WORD[parameter]}`);
+      const heard = `, step ${k + 1}: ${turns ? "turn about" : "shift along"} ${axis} by the ${WORD[parameter]}`;
+      this.chips[k].innerHTML = `${html(`${turns ? "R" : "T"}_${axis}(${this.symbol(parameter)})`)}<span class="heard">${heard}</span>`;
     });
     this.product.innerHTML = `${this.#name()} =`;
   }
