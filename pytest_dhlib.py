@@ -24,6 +24,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--dh-timeout", type=float, default=60.0, metavar="S", help="seconds for a notebook (60)")
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_load_initial_conftests(early_config: pytest.Config) -> None:
+    """Take the folders of the notebooks for those of the tests, so that no other folder's conftest is loaded."""
+    named = early_config.known_args_namespace
+    named.file_or_dir = [*named.file_or_dir, *named.dh_grade]
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """Grade what was named, and nothing else unless that was named too."""
     named = config.option.dh_grade

@@ -65,7 +65,14 @@ def make_shell() -> Any:
     config = Config()
     config.HistoryManager.enabled = False
     config.InteractiveShell.colors = "nocolor"
-    return InteractiveShell.instance(config=config)
+
+    class Shell(InteractiveShell):  # type: ignore[misc, unused-ignore]
+        """A shell for which ``%matplotlib`` of any kind is fine: there is no window to open."""
+
+        def enable_gui(self, gui: Any = None) -> None:
+            """Do nothing."""
+
+    return Shell.instance(config=config)
 
 
 def run(job: dict[str, Any], out: TextIO) -> None:

@@ -50,6 +50,14 @@ def grade(options: argparse.Namespace) -> int:
     from dhlib.grading.report import write_reports
 
     paths = find_notebooks(options.path)
+    if options.exercises and not options.exercises.is_dir():
+        raise DHError(f"there is no folder {options.exercises}; --exercises names the folder that holds NAME.py.")
+    if options.out.exists() and not options.out.is_dir():
+        raise DHError(f"{options.out} is a file; --out names a folder.")
+    try:
+        options.out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DHError(f"the folder {options.out} cannot be made: {error.strerror}.") from None
     results = []
     for k, result in enumerate(_grade_all(paths, options), 1):
         score = f"{result.points:g} of {result.out_of:g}" if result.exercise else "–"

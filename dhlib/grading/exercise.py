@@ -48,9 +48,9 @@ class Follows:
     rule: Callable[..., object]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Part:
-    """One question.
+    """One question; two parts are equal only if they are the same one.
 
     Parameters
     ----------

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-MISSING = frozenset({"missing", "undefined"})
+#: Faults of a part that was not begun. A tuple, since a forged fault may not be hashable.
+MISSING = ("missing", "undefined")
 
 SENTENCES = {
     "missing": "Put your answer in place of the three dots.",

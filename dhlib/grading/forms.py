@@ -150,7 +150,16 @@ class Function(Valued):
 
     def request(self) -> Request:
         """See the module."""
-        return {"form": self.kind, "shape": list(self.shape), "calls": [list(call) for call in self.calls]}
+        return {
+            "form": self.kind,
+            "shape": list(self.shape),
+            "calls": [[_plain(argument) for argument in call] for call in self.calls],
+        }
+
+
+def _plain(argument: Any) -> Any:
+    """An argument as JSON has it: a number, or a list of floats."""
+    return argument if np.ndim(argument) == 0 else [float(item) for item in argument]
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise, permutations
 from typing import Any
 
@@ -299,14 +300,20 @@ def ends_too_many(chain: Chain, values: FloatArray) -> Iterator[tuple[str, str, 
         yield "ends", says, told
 
 
-def would_have_given(part: Part) -> Iterator[tuple[Slip, FloatArray]]:
+@lru_cache(maxsize=256)
+def would_have_given(part: Part) -> tuple[tuple[Slip, FloatArray], ...]:
     """Every answer to a part that a known misconception leads to, with the words for it.
 
-    Yields
-    ------
-    slip : Slip
-    values : ndarray (probes, *shape)
+    Worked out once for each part, since a class hands in many answers to it.
+
+    Returns
+    -------
+    tuple of (Slip, ndarray (probes, *shape))
     """
+    return tuple(_would_have_given(part))
+
+
+def _would_have_given(part: Part) -> Iterator[tuple[Slip, FloatArray]]:
     asks = part.asks
     if not isinstance(asks, Valued):
         return

@@ -7,7 +7,8 @@ joints that count the other way; its mirror image; the wrong unit; a known misco
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -17,10 +18,11 @@ from dhlib.errors import DHError
 from dhlib.grading.exercise import Part
 from dhlib.grading.forms import Table
 from dhlib.grading.marks import NEARLY, RIGHT, UNREADABLE, WRONG, Mark, make_mark
-from dhlib.grading.misconceptions import KNOWN, Slip, name_one, retellings
+from dhlib.grading.misconceptions import KNOWN, OTHER, Slip, name_one, retellings
 from dhlib.grading.retelling import scaled
-from dhlib.mechanism import Verdict, same_mechanism
+from dhlib.mechanism import FREEDOMS, Sameness, same_mechanism
 from dhlib.scalars import FloatArray
+from dhlib.table import DEFAULT_COLUMNS
 
 Rows = Mapping[str, Any]
 
@@ -67,28 +69,65 @@ def judge_table(part: Part, asks: Table, table: Rows) -> Mark:
 
 
 def read_chain(table: Rows, asks: Table, reference: Chain, degrees: bool = False) -> Chain:
-    """The chain that validated rows describe; with plain numbers for θ and d the joints are those of the arm."""
-    rows = table["rows"]
+    """The chain that validated rows describe.
+
+    Raises
+    ------
+    DHError
+        If they describe none; the message names the row.
+    """
+    table = _without_numbering(table)
     convention = table["convention"] or asks.convention
-    plain = not any(isinstance(cell, str) for row in rows for cell in row)
-    letters = reference.kinds if plain and len(rows) == reference.n else ""
+    columns = table["columns"] or " ".join(DEFAULT_COLUMNS[convention])
     ends = {end: table[end] for end in ("base", "tool") if end in table}
-    chain = Chain.from_table(
-        rows, table["columns"] or "", letters, convention, degrees=degrees, unit=reference.unit, **ends
-    )
+
+    def read(columns: Any, letters: str) -> Chain:
+        return Chain.from_table(
+            table["rows"], columns, letters, convention, degrees=degrees, unit=reference.unit, **ends
+        )
+
+    try:
+        chain = read(columns, "")
+    except DHError as error:
+        try:  # where no row says what varies, θ and d are the zeros of the joints of this arm
+            chain = read(columns, reference.kinds)
+        except DHError:
+            if not table["columns"] and _reads(read, OTHER[convention]):
+                asked, other = (", ".join(DEFAULT_COLUMNS[name]) for name in (convention, OTHER[convention]))
+                raise DHError(f"the columns seem to stand as {other}; asked for is {asked}.") from None
+            raise error from None
     if chain.is_symbolic:
-        raise DHError("the table holds symbols that are no joint variables; give its lengths and angles as numbers.")
+        raise DHError("besides the variable of its own joint a row should hold numbers only, and no other symbol.")
     return chain
+
+
+def _without_numbering(table: Rows) -> Rows:
+    """Leave out a first column that only counts the rows."""
+    rows = table["rows"]
+    first = [row[0] for row in rows if len(row) == 5]
+    if rows and len(first) == len(rows) and first in (list(range(len(rows))), list(range(1, len(rows) + 1))):
+        columns = table["columns"][1:] if table["columns"] else None
+        return {**table, "rows": [row[1:] for row in rows], "columns": columns}
+    return table
+
+
+def _reads(read: Callable[[str, str], Chain], convention: str) -> bool:
+    """Whether the rows make sense with the columns in the order of a convention."""
+    try:
+        read(" ".join(DEFAULT_COLUMNS[convention]), "")
+    except DHError:
+        return False
+    return True
 
 
 def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain) -> Mark:
     """Rung by rung, what the answer is to the reference."""
     if _same_pose(answer, reference):
         return make_mark(part, RIGHT)
-    verdict = same_mechanism(answer, reference, tol=TOLERANCE)
+    verdict = closest(asks, answer, reference)
+    slip = name_one([slip for slip, told in _told_chains(reference) if _is(answer, told)])
     if verdict:
-        return _same_arm(part, asks, verdict, reference)
-    slip = name_one([slip for slip, told in _told_chains(part, reference) if _is(answer, told)])
+        return _same_arm(part, asks, verdict, reference, slip)
     if verdict.mirror:
         says = "This is the mirror image of the arm: the sign of an a, an α or a d is turned."
         known = slip.misconception if slip else KNOWN["sign"]
@@ -103,47 +142,52 @@ def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain) -> Mark
     return make_mark(part, WRONG, _sentence(verdict.reason))
 
 
-def _same_arm(part: Part, asks: Table, verdict: Verdict, reference: Chain) -> Mark:
+def closest(asks: Table, answer: Chain, reference: Chain) -> Sameness:
+    """The verdict that leaves base and tool where the task puts them, if there is one.
+
+    Turning an axis round may be told as joints that count the other way, or as another tool far away; the student who
+    did the first should not be judged by the second.
+    """
+    verdict = same_mechanism(answer, reference, tol=TOLERANCE)
+    if verdict and not _ends_stay(verdict, asks, reference):
+        for size in range(len(FREEDOMS)):
+            for free in combinations(FREEDOMS, size):
+                other = same_mechanism(answer, reference, tol=TOLERANCE, free=free)
+                if other and _ends_stay(other, asks, reference):
+                    return other
+    return verdict
+
+
+def _same_arm(part: Part, asks: Table, verdict: Sameness, reference: Chain, slip: Slip | None) -> Mark:
     """The same arm, with other ends, zeros or senses: right where the task leaves them free."""
     turned = [i for i, sign in enumerate(verdict.signs, 1) if sign < 0]
     shifted = [
         i for i, (kind, offset) in enumerate(zip(reference.kinds, verdict.offsets, strict=True), 1)
         if not _is_zero(kind, float(offset), reference)
     ]  # fmt: skip
-    moved = [
-        (name, end)
-        for name, end in (("base", verdict.base), ("tool", verdict.tool))
-        if not _stays(end, asks, reference)
-    ]
+    ends = {"frame 0": verdict.base, f"frame {reference.n}": verdict.tool}
+    moved = [frame for frame, end in ends.items() if not _stays(end, asks, reference)]
     if moved:
-        name, end = moved[0]
-        distance = float(np.linalg.norm(end[:3, 3]))
-        frame = "frame 0" if name == "base" else f"frame {reference.n}"
-        how = (
-            f"its origin is {distance:.4g} {reference.unit} away"
-            if distance > TOLERANCE * reference.reach
-            else "it is turned"
-        )
-        says = f"This is the right arm, but {frame} is not the one that the task gives: {how}."
-        return make_mark(part, NEARLY, says, CREDIT["ends"], KNOWN["ends"])
-    joints = f"joint{'s' if len(turned) > 1 else ''} {_and(turned)}"
+        distance = float(np.linalg.norm(ends[moved[0]][:3, 3]))
+        far = distance > TOLERANCE * reference.reach
+        how = f"its origin is {distance:.4g} {reference.unit} away" if far else "it is turned"
+        them = "it" if len(moved) == 1 else "them"
+        says = f"with this table {' and '.join(moved)} would not be where the task puts {them}"
+        says = f"{slip.says} The axes would fit, but {says}." if slip else f"The axes fit, but {says}: {how}."
+        return make_mark(part, NEARLY, says, CREDIT["ends"], slip.misconception if slip else KNOWN["ends"])
     if turned and "senses" not in asks.free:
         q = f"q{turned[0]}"
-        says = f"This is the right arm, but {joints} would have to turn the other way: write -{q} for {q}."
+        says = f"The axes fit, but {_joints(turned)} would have to count the other way: write -{q} for {q}."
         return make_mark(part, NEARLY, says, CREDIT["senses"], KNOWN["sense"])
-    zeros = f"joint{'s' if len(shifted) > 1 else ''} {_and(shifted)}"
     if shifted and "zeros" not in asks.free:
-        says = (
-            f"This is the right arm, but {zeros} would have to count from another zero: add an offset to q{shifted[0]}."
-        )
+        q = f"q{shifted[0]}"
+        says = f"The axes fit, but {_joints(shifted)} would have to count from another zero: add an offset to {q}."
         return make_mark(part, NEARLY, says, CREDIT["zeros"], KNOWN["offset"])
-    remarks = [f"{joints} counting the other way"] if turned else []
-    remarks += [f"{zeros} counting from another zero"] if shifted else []
+    remarks = [f"{_joints(turned)} counting the other way"] if turned else []
+    remarks += [f"{_joints(shifted)} counting from another zero"] if shifted else []
     if not remarks:
-        return make_mark(part, RIGHT, "It is not the table of the book, but one of the same arm.")
-    return make_mark(
-        part, RIGHT, f"It is the same arm as in the book, with {' and '.join(remarks)}: choices that are yours."
-    )
+        return make_mark(part, RIGHT, "It is another table than that of the book, of the same arm.")
+    return make_mark(part, RIGHT, f"It is the arm of the book, with {' and '.join(remarks)}: choices that are yours.")
 
 
 def _with_degrees(part: Part, answer: Chain, reference: Chain) -> Mark:
@@ -164,14 +208,14 @@ def _other_convention(part: Part, asks: Table, answer: Chain, reference: Chain) 
     return make_mark(part, WRONG, says, 0.0, known)
 
 
-def _told_chains(part: Part, reference: Chain) -> list[tuple[Slip, Chain]]:
+def _told_chains(reference: Chain) -> list[tuple[Slip, Chain]]:
     """Tables that known misconceptions lead to, without those that describe the right arm after all."""
     told: list[tuple[Slip, Chain]] = []
     for key, says, arm in retellings(reference):
         if isinstance(arm, Chain) and arm.kinds == reference.kinds and key not in ("ends", "unit"):
             # A table is told by its rows: what is read in the other convention is written down in this one.
             rows = Chain(arm.joints, reference.convention, reference.base, reference.tool, unit=reference.unit)
-            told.append((Slip(KNOWN[key], says.format(part="your table")), rows))
+            told.append((Slip(KNOWN[key], says.replace("Your {part}", "Your table").format(part="your table")), rows))
     return told
 
 
@@ -199,6 +243,10 @@ def _is_zero(kind: str, offset: float, reference: Chain) -> bool:
     return abs(math.remainder(offset, 2 * math.pi)) <= 2 * TOLERANCE
 
 
+def _ends_stay(verdict: Sameness, asks: Table, reference: Chain) -> bool:
+    return _stays(verdict.base, asks, reference) and _stays(verdict.tool, asks, reference)
+
+
 def _stays(end: FloatArray, asks: Table, reference: Chain) -> bool:
     """Whether base or tool of the verdict is what the task leaves free."""
     if "ends" in asks.free:
@@ -208,9 +256,9 @@ def _stays(end: FloatArray, asks: Table, reference: Chain) -> bool:
     return "turns" in asks.free or bool(np.abs(end[:3, :3] - np.eye(3)).max() <= 2 * TOLERANCE)
 
 
-def _and(numbers: list[int]) -> str:
+def _joints(numbers: list[int]) -> str:
     words = [str(number) for number in numbers]
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
+    return f"joint {words[0]}" if len(words) == 1 else f"joints {', '.join(words[:-1])} and {words[-1]}"
 
 
 def _sentence(text: str) -> str:

@@ -1,0 +1,150 @@
+"""``dhlib grade`` as its user meets it."""
+
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from dhlib.cli import main
+from dhlib.grading.command import find_notebooks
+from dhlib.grading.grade import Result
+from dhlib.grading.marks import Mark
+from dhlib.grading.report import feedback_page, page_names, safe
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def folder(tmp_path, notebook_with):
+    """A class: a good notebook, one with an error, a loop, and three broken files."""
+    class_ = tmp_path / "class"
+    (class_ / "Müller, Ada").mkdir(parents=True)
+    write(class_ / "Müller, Ada" / "quickshot.ipynb", notebook_with({"slip": "slip = 'n_y'"}))
+    write(class_ / "=cmd.ipynb", notebook_with({"slip": "slip = 'n_y'", "A1": "A1 = 1 / 0"}))
+    write(class_ / "loop.ipynb", notebook_with({"A1": "while True: pass", "slip": "slip = 'n_y'"}))
+    (class_ / "pdf.ipynb").write_bytes(b"%PDF-1.7 \xff")
+    (class_ / "cut.ipynb").write_text('{"cells": [{"source"')
+    write(class_ / "other.ipynb", {"cells": [{"cell_type": "code", "source": "x = 1"}], "nbformat": 4})
+    return class_
+
+
+def write(path, notebook):
+    path.write_text(json.dumps(notebook), encoding="utf-8")
+
+
+def grades(out):
+    with (out / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
+        return {row["notebook"]: row for row in csv.DictReader(file)}
+
+
+@pytest.mark.notebooks
+def test_a_class_is_graded(folder, tmp_path, capsys):
+    out = tmp_path / "out"
+    code = main(["grade", str(folder), "--out", str(out), "--timeout", "6", "--workers", "2"])
+    said = capsys.readouterr()
+    assert code == 1
+    assert "Traceback" not in said.err + said.out
+    rows = grades(out)
+    assert len(rows) == 6
+    good = rows["Müller, Ada/quickshot.ipynb"]
+    assert (good["status"], good["points"], good["out_of"], good["slip"], good["A1"]) == ("graded", "1", "30", "1", "0")
+    assert (rows["'=cmd.ipynb"]["points"], rows["loop.ipynb"]["points"]) == ("1", "1")
+    assert rows["pdf.ipynb"]["status"] == rows["cut.ipynb"]["status"] == rows["other.ipynb"]["status"] == "unreadable"
+    assert "does not say which exercise" in rows["other.ipynb"]["message"]
+    for row in rows.values():
+        page = (out / row["feedback"]).read_text(encoding="utf-8")
+        assert "<script" not in page
+        assert "http://" not in page.replace("http-equiv", "")
+    assert "ZeroDivisionError: division by zero" in (out / rows["'=cmd.ipynb"]["feedback"]).read_text(encoding="utf-8")
+    assert "[6/6]" in said.err
+
+
+def test_the_order_is_that_of_the_paths(folder):
+    found = [path.relative_to(folder).as_posix() for path in find_notebooks(folder)]
+    assert found == ["=cmd.ipynb", "Müller, Ada/quickshot.ipynb", "cut.ipynb", "loop.ipynb", "other.ipynb", "pdf.ipynb"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["nowhere", "--out", "out"], "there is no file or folder nowhere"),
+        ([".", "--out", "out"], "no notebook"),
+        ([str(ROOT / "exercises"), "--out", "out", "--exercise", "unknown"], "no exercise 'unknown'"),
+        ([str(ROOT / "exercises"), "--out", "out", "--exercises", "nowhere"], "no folder nowhere"),
+    ],
+)
+def test_misuse_is_said_in_a_sentence(tmp_path, monkeypatch, capsys, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    assert main(["grade", *arguments]) == 2
+    said = capsys.readouterr().err
+    assert words in said
+    assert "Traceback" not in said
+    assert said.startswith("dhlib: ")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["grade"],
+        ["grade", ".", "--out", "x", "--timeout", "-1"],
+        ["grade", ".", "--out", "x", "--workers", "0"],
+        ["grade", ".", "--out", "x", "--timeout", "soon"],
+    ],
+)
+def test_wrong_arguments_show_the_usage(capsys, arguments):
+    with pytest.raises(SystemExit) as stopped:
+        main(arguments)
+    assert stopped.value.code == 2
+    assert "usage: dhlib" in capsys.readouterr().err
+
+
+def test_out_that_is_a_file_is_said(tmp_path, capsys):
+    (tmp_path / "out").write_text("x")
+    assert main(["grade", str(ROOT / "exercises"), "--out", str(tmp_path / "out")]) == 2
+    assert "is a file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("cell", ["=1+1", "+1", "-1", "@x", "\t=1", " =1", "\r=1"])
+def test_formulas_are_quoted(cell):
+    assert safe(cell).startswith("'")
+    assert safe("plain -1") == "plain -1"
+
+
+def test_feedback_is_escaped(exercise, tmp_path):
+    mark = Mark("A1", 0, 1, "wrong", "<script>alert(1)</script>", "", "")
+    result = Result(tmp_path / "<img src=x onerror=alert(1)>.ipynb", "graded", "</p><b>", exercise, [mark])
+    page = feedback_page(result)
+    assert "<script" not in page
+    assert "<img" not in page
+    assert "&lt;script&gt;" in page
+
+
+def test_page_names_are_plain_and_differ():
+    names = page_names(["../a.ipynb", "a.ipynb", "A.ipynb", "ü/b c.ipynb", "....ipynb", "x" * 300 + ".ipynb"])
+    assert len({name.casefold() for name in names}) == 6
+    assert all("/" not in name and len(name) < 120 for name in names)
+
+
+def test_pytest_says_what_is_wrong_with_its_option(tmp_path):
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-n0", "--dh-grade"]
+    missing = subprocess.run(
+        [*command, str(tmp_path / "x.ipynb")], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert "there is no file" in missing.stderr
+    assert missing.returncode == 4
+    (tmp_path / "y.ipynb").write_text("no notebook")
+    broken = subprocess.run(
+        [*command, str(tmp_path / "y.ipynb")], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert "y.ipynb is no notebook" in broken.stdout
+    assert "Traceback" not in broken.stdout
+
+
+def test_pytest_elsewhere_does_not_load_the_library():
+    probe = "import sys, pytest_dhlib; print('dhlib' in sys.modules, 'numpy' in sys.modules)"
+    said = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
+    assert said.stdout.split() == ["False", "False"]

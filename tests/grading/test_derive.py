@@ -1,0 +1,138 @@
+"""Student editions: solution minus bodies, without a trace of them, and never adrift."""
+
+import copy
+import json
+from pathlib import Path
+
+import pytest
+
+from dhlib.errors import DHError
+from dhlib.grading.derive import as_text, derive, main, open_regions
+
+ROOT = Path(__file__).parents[2]
+SOLUTION = ROOT / "solutions" / "quickshot.ipynb"
+PRISTINE = ROOT / "exercises" / "quickshot.ipynb"
+MARKER = "MARKER-7f3a"
+
+
+@pytest.fixture
+def solution():
+    return json.loads(SOLUTION.read_text(encoding="utf-8"))
+
+
+def test_the_exercise_is_what_its_solution_gives(solution):
+    assert PRISTINE.read_text(encoding="utf-8") == as_text(derive(solution, "quickshot")), "run make exercises"
+
+
+def test_exercise_is_solution_minus_bodies_cell_by_cell(solution):
+    derived = {cell["id"]: cell for cell in derive(solution, "quickshot")["cells"]}
+    kept = [cell for cell in solution["cells"] if cell["metadata"]["dh"]["role"] != "solution"]
+    assert list(derived) == [cell["id"] for cell in kept]
+    for cell in kept:
+        source = "".join(cell["source"])
+        mine = "".join(derived[cell["id"]]["source"])
+        if cell["metadata"]["dh"]["role"] == "answer":
+            assert mine != source
+            assert "..." in mine
+        else:
+            assert mine == source
+
+
+def test_markers_planted_everywhere_are_gone(solution):
+    planted = copy.deepcopy(solution)
+    planted["metadata"][MARKER] = MARKER
+    planted["metadata"]["kernelspec"]["display_name"] = MARKER
+    for cell in planted["cells"]:
+        cell["metadata"][MARKER] = {"x": MARKER}
+        cell["metadata"]["tags"] = [MARKER]
+        cell["metadata"]["dh"]["note"] = MARKER
+        cell["attachments"] = {f"{MARKER}.png": {"image/png": MARKER}}
+        cell[MARKER] = MARKER
+        if cell["cell_type"] == "code":
+            cell["execution_count"] = 7
+            cell["outputs"] = [{"output_type": "stream", "name": "stdout", "text": [MARKER]}]
+            source = "".join(cell["source"])
+            cell["source"] = source.replace("### solution\n", f"### solution\n# {MARKER}\nx = '{MARKER}'\n")
+        elif cell["metadata"]["dh"]["role"] == "solution":
+            cell["source"] = [MARKER]
+    assert as_text(planted).count(MARKER) > 300
+    text = as_text(derive(planted, "quickshot"))
+    assert MARKER not in text
+    assert '"execution_count": 7' not in text
+    assert text == as_text(derive(solution, "quickshot"))
+
+
+def test_no_line_of_a_solution_is_left(solution):
+    text = as_text(derive(solution, "quickshot"))
+    lines = set()
+    for cell in solution["cells"]:
+        source = "".join(cell["source"])
+        if "### solution" in source:
+            body = source.split("### solution\n")[1].split("### yours")[0]
+            stub = source.split("### yours")[1]
+            lines.update(line.strip() for line in body.splitlines() if len(line.strip()) > 12 and line not in stub)
+    assert len(lines) > 40
+    assert [line for line in lines if json.dumps(line)[1:-1] in text] == []
+
+
+def test_stubs_never_raise_by_themselves(solution):
+    names = {}
+    for cell in derive(solution, "quickshot")["cells"]:
+        if cell["metadata"]["dh"]["role"] in ("setup", "answer"):
+            exec("".join(cell["source"]), names)
+    assert names["A1"] is ...
+
+
+@pytest.mark.parametrize(
+    ("source", "words"),
+    [
+        ("### solution\nx = 1", "not closed"),
+        ("### solution\nx = 1\n### end", "'### yours' should come first"),
+        ("### yours\n# x\n### end", "'### solution' should come first"),
+        ("### solution\n### solution", "should come first"),
+        ("### solution\nx = 1\n### yours\nx = ...\n### end", "should be a comment"),
+    ],
+)
+def test_a_broken_region_is_named(source, words):
+    with pytest.raises(DHError, match=words):
+        open_regions(source)
+
+
+def test_indented_regions_keep_their_place():
+    source = "def f():\n    ### solution\n    return 1\n    ### yours\n    # return ...\n    ### end\n"
+    assert open_regions(source) == "def f():\n    return ..."
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda cells: cells[1]["metadata"].clear(), "should have a role"),
+        (lambda cells: cells[2].update(id=cells[1]["id"]), "once only"),
+        (lambda cells: cells[5].update(source='check("A1", 1)'), "the check cell of frames should be"),
+        (lambda cells: cells[9].update(id="x", metadata=cells[4]["metadata"]), "already"),
+    ],
+)
+def test_a_broken_solution_is_named(solution, change, words):
+    code = solution["cells"]
+    change(code)
+    with pytest.raises(DHError, match=words):
+        derive(solution, "quickshot")
+
+
+def test_drift_is_reported_and_mended(tmp_path, capsys):
+    folders = ["--solutions", str(SOLUTION.parent), "--exercises", str(tmp_path)]
+    assert main([*folders, "--check"]) == 1
+    assert "run make exercises" in capsys.readouterr().err
+    assert main(folders) == 0
+    assert main([*folders, "--check"]) == 0
+    changed = tmp_path / "quickshot.ipynb"
+    changed.write_text(changed.read_text(encoding="utf-8").replace("A1 = ...", "A1 = 1"), encoding="utf-8")
+    assert main([*folders, "--check"]) == 1
+
+
+def test_the_stored_outputs_of_the_solution_say_right(solution):
+    checks = [cell for cell in solution["cells"] if cell["metadata"]["dh"]["role"] == "check"]
+    assert len(checks) == 18
+    for cell in checks:
+        (output,) = cell["outputs"]
+        assert "".join(output["text"]).startswith(f"{cell['metadata']['dh']['part']}: right.")

@@ -1,0 +1,286 @@
+"""Marking: right answers by any route, kind words for the rest, and no trust in what comes from the box."""
+
+import json
+from itertools import islice
+
+import numpy as np
+import pandas as pd
+import pytest
+import sympy as sp
+
+from dhlib import Chain, Revolute, Rz, robots
+from dhlib.errors import DHError
+from dhlib.grading.answers import read_answer
+from dhlib.grading.exercise import Exercise, Follows, Part, load_exercise
+from dhlib.grading.forms import Choice, Formula, Function, Numbers, Valued
+from dhlib.grading.marking import Marker, mark
+
+theta = sp.symbols("theta1:5")
+
+
+def test_the_solution_gets_full_marks(exercise, solved):
+    marks = Marker(exercise).mark_all({p.id: read_answer(p.asks.request(), solved[p.id]) for p in exercise.parts})
+    assert [(m.part, m.verdict) for m in marks if m.verdict != "right"] == []
+    assert sum(m.points for m in marks) == exercise.points == 30
+
+
+def test_the_untouched_exercise_gets_none(exercise):
+    marks = Marker(exercise).mark_all({p.id: read_answer(p.asks.request(), ...) for p in exercise.parts})
+    assert {m.verdict for m in marks} == {"open"}
+    assert sum(m.points for m in marks) == 0
+
+
+@pytest.mark.parametrize(
+    "dress",
+    [
+        np.asarray, np.ndarray.tolist, np.matrix, sp.Matrix, pd.DataFrame,
+        lambda a: tuple(map(tuple, a)), lambda a: a.round(3), lambda a: sp.Matrix(a.round(3)).tolist(),
+        lambda a: a.astype(object), lambda a: a.astype(complex), lambda a: [[str(x) and x for x in row] for row in a],
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("part", ["A1", "T4", "X", "T4_back"])
+def test_numbers_in_any_dress(judge, solved, part, dress):
+    assert judge(part, dress(np.asarray(solved[part]))).verdict == "right"
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        sp.expand, sp.trigsimp, sp.ImmutableMatrix, lambda m: m.tolist(), lambda m: np.array(m.tolist(), dtype=object),
+        lambda m: m.applyfunc(lambda e: e.rewrite(sp.exp)), lambda m: m.applyfunc(lambda e: e.rewrite(sp.tan)),
+        lambda m: m.applyfunc(sp.expand_trig), lambda m: m.evalf(),
+        lambda m: m.subs(dict(zip(theta, sp.symbols("q1:5", real=True), strict=True))), pd.DataFrame,
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("part", ["A3_sym", "T4_sym"])
+def test_formulas_in_any_form(judge, solved, part, form):
+    if form is pd.DataFrame:
+        assert judge(part, pd.DataFrame(solved[part].tolist())).verdict == "right"
+    else:
+        assert judge(part, form(solved[part])).verdict == "right"
+
+
+def test_the_short_form_of_the_library_is_right(judge, arm):
+    assert judge("T4_sym", arm.symbolic()).verdict == "right"
+    assert judge("T4_sym", arm.symbolic(short=True)).verdict == "right"
+    assert judge("n_y", arm.symbolic(short=True)[1, 0]).verdict == "right"
+
+
+def test_a_function_may_return_anything_that_is_a_matrix(judge, arm):
+    assert judge("link", lambda i, q: arm.A(i, q).tolist()).verdict == "right"
+    assert judge("link", lambda i, q: sp.Matrix(arm.A(i, q))).verdict == "right"
+    assert judge("link", arm.A).verdict == "right"
+
+
+@pytest.mark.parametrize("choice", ["n_y", "N_y", " ny ", ["n_y"], sp.Symbol("n_y")])
+def test_a_choice_in_any_spelling(judge, choice):
+    assert judge("slip", choice).verdict == "right"
+
+
+def test_a_choice_that_is_none_of_them(judge):
+    assert judge("slip", "n_w").verdict == "unreadable"
+    assert "n_x, n_y, n_z" in judge("slip", "n_w").message
+
+
+def test_missing_shape_text_and_nan_each_get_a_kind_sentence(exercise, judge):
+    for part in exercise.parts:
+        said = {str(judge(part.id, value)) for value in (..., "text", np.full((4, 4), np.nan), np.eye(3))}
+        assert len(said) >= (3 if part.asks.kind not in ("function", "choice") else 2), part.id
+        for words in said:
+            assert words.startswith(f"{part.id}: ")
+            assert "None" not in words
+            assert "{" not in words
+            assert len(words) < 220
+
+
+# Each reference against its own wrong self: what no answer may pass as
+
+
+def mutations(values):
+    """Small changes of a right answer, each larger than the tolerance."""
+    for k in np.ndindex(values.shape[1:]):
+        for by in (0.2, -0.2):
+            changed = values.copy()
+            changed[(slice(None), *k)] += by
+            yield changed
+
+
+def test_no_changed_answer_passes(exercise):
+    for part in exercise.parts:
+        if isinstance(part.asks, Valued):
+            for changed in islice(mutations(part.asks.values(part.chain)), 0, None, 5):
+                assert not mark(part, {"values": changed.tolist()}).passed, part.id
+
+
+def test_a_formula_right_at_zero_only_does_not_pass(judge, arm):
+    constant = sp.Matrix(arm.T(0, 4, [0, 0, 0, 0]))
+    got = judge("T4_sym", constant)
+    assert got.verdict == "wrong"
+    assert "leave theta1, theta2, theta3, theta4 as symbols" in got.message
+
+
+def test_close_values_are_told_to_round_later(judge, solved):
+    got = judge("T4", np.round(solved["T4"], 2))
+    assert got.verdict == "nearly"
+    assert got.points == 1
+    assert "Round only at the end" in got.message
+
+
+# What is wrong with a matrix, before it is compared
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda m: m.__setitem__((3, 0), 0.5), "last row"),
+        (lambda m: m.__setitem__((slice(3), 1), 2 * m[:3, 1]), "Column o has length 2"),
+        (lambda m: m.__setitem__((slice(3), 1), m[:3, 0]), "not at right angles"),
+        (lambda m: m.__setitem__((slice(3), 2), -m[:3, 2]), "determinant of the rotation is -1"),
+        (lambda m: m.__setitem__((slice(3), 3), m[:3, 3] + [3, 0, 4]), "5 mm away"),
+        (lambda m: m.__setitem__(slice(3), (m @ Rz(1.0))[:3]), "p is right; the rotation is not: see columns n and o"),
+    ],
+)
+def test_the_first_thing_that_is_wrong(judge, solved, change, words):
+    matrix = np.array(solved["T4_quarter"])
+    change(matrix)
+    got = judge("T4_quarter", matrix)
+    assert words in got.message
+    assert got.verdict == "wrong"
+
+
+# Errors that follow
+
+
+def readings(exercise, values):
+    return {p: read_answer(exercise.part(p).asks.request(), v) for p, v in values.items()}
+
+
+def marks_of(exercise, values):
+    return {m.part: m for m in Marker(exercise).mark_all(readings(exercise, values))}
+
+
+def test_a_right_product_of_a_wrong_link_is_not_punished_again(exercise, solved):
+    wrong = dict(solved, A2=solved["A2"] @ Rz(0.3))
+    values = {k: wrong[k] for k in ("A1", "A2", "A3", "A4")}
+    product = values["A1"] @ values["A2"] @ values["A3"] @ values["A4"]
+    marks = marks_of(exercise, values | {"T4": product, "X": solved["Z"] @ product @ solved["E"]})
+    assert marks["A2"].verdict == "wrong"
+    assert (marks["T4"].verdict, marks["T4"].points) == ("follows", 2)
+    assert "A2" in marks["T4"].message
+    assert (marks["X"].verdict, marks["X"].points) == ("follows", 2)
+
+
+def test_the_same_product_alone_is_wrong(exercise, solved):
+    product = solved["A1"] @ solved["A2"] @ Rz(0.3) @ solved["A3"] @ solved["A4"]
+    assert marks_of(exercise, {"T4": product})["T4"].verdict == "wrong"
+
+
+def test_all_links_wrong_without_a_reason_carry_nothing(exercise):
+    values = dict.fromkeys(("A1", "A2", "A3", "A4", "T4"), np.eye(4))
+    assert marks_of(exercise, values)["T4"].verdict == "wrong"
+    assert marks_of(exercise, {"T4": np.eye(4), "X": exercise.arm.base @ exercise.arm.tool})["X"].verdict == "wrong"
+
+
+def test_a_convention_confused_throughout_is_punished_in_the_links_alone(exercise, arm, solved):
+    told = Chain(arm.joints, "modified", unit="mm")
+    q = solved["q"]
+    values = {f"A{i}": told.A(i, q) for i in (1, 2, 3, 4)} | {"T4": told.T(0, 4, q)}
+    marks = marks_of(exercise, values)
+    assert marks["A1"].misconception == "convention"
+    assert marks["T4"].verdict == "follows"
+
+
+# Nothing from the box is trusted
+
+
+@pytest.mark.parametrize(
+    "reading",
+    [
+        None, 3, "right", [], {}, {"values": None}, {"values": []}, {"values": [1]}, {"values": "x" * 10},
+        {"values": [[[1, 0, 0, 0]] * 3]}, {"values": [[[True] * 4] * 4]}, {"values": [[["1"] * 4] * 4]},
+        {"values": [[[None] * 4] * 4]}, {"values": [[[1e300] * 4] * 4]}, {"values": [[[10**400] * 4] * 4]},
+        {"values": [[[float("nan")] * 4] * 4]}, {"values": [[[float("inf")] * 4] * 4]},
+        {"values": {"0": 1}}, {"verdict": "right", "points": 30}, {"fault": 3}, {"fault": None},
+        {"fault": {"a": 1}}, {"fault": "shape", "shape": "x"}, {"fault": "shape", "shape": [[1]]},
+        {"fault": "symbols", "names": 3}, {"fault": "raised", "type": ["x"], "text": {"y": 2}},
+        {"fault": "raised", "type": "{part.__class__}", "text": "{0}"}, {"choice": 3}, {"table": 3},
+        {"table": {"rows": [[{}]]}}, {"table": {"rows": [["9" * 10_000] * 4]}}, {"table": {"rows": [[0] * 4] * 9_999}},
+        {"table": {"rows": [["q1", 0, 0, 0]], "columns": 3}}, {"table": {"rows": [["q1", 0, 0, 0]], "base": 3}},
+        {"table": {"rows": [["q1", 0, 0, 0]], "convention": "x"}},
+        {"table": {"rows": [["q1*" * 60 + "q1", 0, 0, 0]] * 4, "columns": None}},
+        {"table": {"rows": [["__import__('os')", 0, 0, 0]] * 4, "columns": None}},
+        {"table": {"rows": [["q1", 0, 0, 0], [], [1], ["q1"] * 9], "columns": ["theta"] * 4}},
+    ],
+    ids=lambda r: str(r)[:60],
+)  # fmt: skip
+def test_a_forged_reading_earns_nothing_and_breaks_nothing(exercise, reading):
+    for part in exercise.parts:
+        got = mark(part, reading)
+        assert got.points == 0
+        assert not got.passed
+        assert len(got.message) < 2_000
+
+
+def test_a_part_that_is_not_there_is_told_which_are(exercise):
+    with pytest.raises(DHError, match="its parts are frames, table, A1"):
+        Marker(exercise).mark("B7", {})
+
+
+# Exercises that are wrong themselves
+
+
+def test_an_exercise_with_a_doubled_part_is_refused(arm):
+    part = Part("A", "A", 1, Choice({"x": "yes"}, "x"))
+    with pytest.raises(DHError, match="twice"):
+        Exercise("e", "E", arm, [part, part])
+
+
+def test_a_part_can_only_follow_from_earlier_ones(arm):
+    part = Part("A", "A", 1, Choice({"x": "yes"}, "x"), follows=Follows(["B"], lambda b: b))
+    with pytest.raises(DHError, match="no earlier part"):
+        Exercise("e", "E", arm, [part])
+
+
+@pytest.mark.parametrize("name", ["../secret", "nothing", "", "A", 3])
+def test_an_unknown_exercise_is_named(name):
+    with pytest.raises(DHError, match="exercise"):
+        load_exercise(name)
+
+
+def test_an_exercise_of_ones_own(tmp_path):
+    (tmp_path / "mine.py").write_text(
+        "from dhlib import robots\n"
+        "from dhlib.grading.exercise import Exercise, Part\n"
+        "from dhlib.grading.forms import Numbers\n"
+        "EXERCISE = Exercise('mine', 'Mine', robots.planar(2),"
+        " [Part('p', 'Hand', 1, Numbers(lambda arm, q: arm.fk(q)[:3, 3], shape=(3,), at=(0.5, 1.0)))])\n"
+    )
+    part = load_exercise("mine", tmp_path).part("p")
+    right = robots.planar(2).fk([0.5, 1.0])[:3, 3]
+    assert mark(part, read_answer(part.asks.request(), right)).verdict == "right"
+    assert "wrong sign" not in mark(part, read_answer(part.asks.request(), right + 1)).message
+    assert (
+        mark(part, read_answer(part.asks.request(), robots.planar(2).fk([-0.5, 1.0])[:3, 3])).misconception == "sense"
+    )
+
+
+def test_prismatic_joints_and_the_modified_convention_are_diagnosed_too():
+    arm = robots.stanford().to_modified()
+    q = (0.4, -0.9, 0.3, 1.2, 0.7, -0.5)
+    part = Part("T", "T", 1, Numbers(lambda arm, q: arm.fk(q), at=q, length_tolerance=1e-3), arm=arm)
+    joints = [*arm.joints]
+    joints[2] = Revolute(d=joints[2].d, a=joints[2].a, alpha=joints[2].alpha, offset=joints[2].theta)
+    told = Chain(joints, "modified", base=arm.base, tool=arm.tool)
+    assert mark(part, read_answer(part.asks.request(), told.fk(q))).misconception == "joint_kind"
+    got = mark(part, read_answer(part.asks.request(), Chain(arm.joints, "classic", arm.base, arm.tool).fk(q)))
+    assert got.misconception == "convention"
+    assert "Here it is Rx Tx Rz Tz" in got.message
+
+
+def test_requests_hold_nothing_of_the_solution(exercise):
+    for part in exercise.parts:
+        request = part.asks.request()
+        assert set(request) <= {"form", "shape", "symbols", "points", "calls", "convention", "options"}
+        assert json.loads(json.dumps(request)) == request
+    kinds = {type(part.asks) for part in exercise.parts}
+    assert {Numbers, Formula, Function, Choice} <= kinds

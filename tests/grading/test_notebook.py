@@ -1,0 +1,119 @@
+"""Notebooks: read leniently, and put into the pristine exercise."""
+
+import json
+
+import pytest
+
+from dhlib.errors import DHError
+from dhlib.grading.notebook import Cell, exercise_name, load_notebook, merge, read_cells
+
+SETUP = Cell("import math", role="setup")
+PRISTINE = [
+    SETUP,
+    Cell("read me", code=False, role="text"),
+    Cell("A = ...", role="answer", part="A"),
+    Cell('check("A", A)', role="check", part="A"),
+    Cell("B = ...", role="answer", part="B"),
+    Cell('check("B", B)', role="check", part="B"),
+]
+A, B = Cell("A = 1", role="answer", part="A"), Cell("B = 2", role="answer", part="B")
+CHECK_A, CHECK_B = PRISTINE[3], PRISTINE[5]
+
+
+def sources(submission):
+    return [cell.source for cell in merge(PRISTINE, submission)]
+
+
+def test_answers_replace_the_stubs():
+    assert sources([SETUP, A, CHECK_A, B, CHECK_B]) == [
+        "import math",
+        "A = 1",
+        'check("A", A)',
+        "B = 2",
+        'check("B", B)',
+    ]
+
+
+def test_changed_and_deleted_cells_of_the_exercise_count_for_nothing():
+    forged = Cell('print("A: right.")', role="check", part="A")
+    patched = Cell("check = print", role="setup")
+    assert sources([patched, A, forged, B]) == sources([SETUP, A, CHECK_A, B, CHECK_B])
+    assert sources([]) == [cell.source for cell in PRISTINE if cell.code]
+
+
+def test_extra_cells_keep_their_place():
+    x, y, z = (Cell(f"{name} = 0") for name in "xyz")
+    assert sources([x, SETUP, A, CHECK_A, y, B, CHECK_B, z]) == [
+        "import math", "x = 0", "A = 1", 'check("A", A)', "y = 0", "B = 2", 'check("B", B)', "z = 0",
+    ]  # fmt: skip
+
+
+def test_a_cell_that_was_split_is_put_together():
+    assert sources([SETUP, Cell("a = 1", role="answer", part="A"), Cell("A = a", role="answer", part="A")])[1:3] == [
+        "a = 1",
+        "A = a",
+    ]
+
+
+def test_an_answer_to_no_part_is_an_extra_of_nothing():
+    assert "C = 1" not in sources([SETUP, Cell("C = 1", role="answer", part="C")])
+
+
+def test_roles_that_were_lost_are_found_again():
+    bare = [Cell(cell.source) for cell in (SETUP, A, CHECK_A, Cell("b = 2"), Cell("def B():\n    pass"), CHECK_B)]
+    merged = sources(bare)
+    assert merged.count('check("A", A)') == merged.count('check("B", B)') == 1
+    assert "A = 1" in merged
+    assert "A = ..." not in merged
+    assert "def B():\n    pass" in merged
+
+
+def write(path, content):
+    path.write_text(content if isinstance(content, str) else json.dumps(content), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("", "is empty"),
+        ("%PDF-1.7", "is no notebook"),
+        ('{"cells": [{"source": "x"', "cut off"),
+        ("[" * 100_000, "is no notebook"),
+        ("[]", "holds no cells"),
+        ('{"cells": 3}', "holds no cells"),
+        ('{"nbformat": 4}', "holds no cells"),
+    ],
+)
+def test_what_is_no_notebook_is_said(tmp_path, content, words):
+    with pytest.raises(DHError, match=words):
+        load_notebook(write(tmp_path / "x.ipynb", content))
+
+
+def test_bytes_that_are_no_text(tmp_path):
+    (tmp_path / "x.ipynb").write_bytes(b"PK\x03\x04\xff\xfe")
+    with pytest.raises(DHError, match="no notebook"):
+        load_notebook(tmp_path / "x.ipynb")
+    with pytest.raises(DHError, match="cannot be opened"):
+        load_notebook(tmp_path / "y.ipynb")
+
+
+def test_damaged_cells_are_read_as_far_as_they_go(tmp_path):
+    cells = [
+        3, None, {}, {"cell_type": "code"},
+        {"cell_type": "code", "source": ["a", 1, "b"], "metadata": {"dh": "x"}},
+        {"cell_type": "code", "source": "c", "metadata": {"dh": {"role": 3, "part": "A"}}},
+    ]  # fmt: skip
+    read = read_cells(load_notebook(write(tmp_path / "x.ipynb", {"cells": cells, "nbformat": 4})))
+    assert [cell.source for cell in read] == ["", "", "", "", "ab", "c"]
+    assert not any(cell.role for cell in read)
+
+
+def test_old_notebooks_are_read(tmp_path):
+    old = {"nbformat": 3, "worksheets": [{"cells": [{"cell_type": "code", "input": ["A = 1"], "language": "python"}]}]}
+    assert read_cells(load_notebook(write(tmp_path / "x.ipynb", old)))[0].source == "A = 1"
+
+
+def test_the_notebook_names_its_exercise():
+    assert exercise_name({"metadata": {"dh": {"exercise": "quickshot"}}}) == "quickshot"
+    assert exercise_name({"metadata": {"dh": {"exercise": ["x"]}}}) == exercise_name({}) == ""

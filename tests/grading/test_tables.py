@@ -1,0 +1,171 @@
+"""Tables: any table of the arm is right; the rest is placed on the ladder."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import sympy as sp
+
+from dhlib import Chain, Revolute, Tz, place_frames, robots
+from dhlib.grading.answers import read_answer
+from dhlib.grading.exercise import Part
+from dhlib.grading.forms import Table
+from dhlib.grading.marking import mark
+
+t = sp.symbols("theta1:5")
+pi = sp.pi
+RIGHT = [[t[0], 100, 20, -pi / 2], [t[1], 0, 160, 0], [t[2], 28, 0, pi / 2], [t[3], 250, 0, 0]]
+COLUMNS = ["theta", "d", "a", "alpha"]
+
+
+def with_cells(*changes):
+    rows = [list(row) for row in RIGHT]
+    for i, name, value in changes:
+        rows[i - 1][COLUMNS.index(name)] = value
+    return rows
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        RIGHT,
+        tuple(map(tuple, RIGHT)),
+        np.array(RIGHT, dtype=object),
+        sp.Matrix(RIGHT),
+        pd.DataFrame(RIGHT, columns=COLUMNS),
+        pd.DataFrame(RIGHT, columns=COLUMNS)[["alpha", "a", "theta", "d"]],
+        {name: [row[k] for row in RIGHT] for k, name in enumerate(["θ", "d", "a", "α"])},
+        [[i, *row] for i, row in enumerate(RIGHT, 1)],
+        [["q1", 100, 20, "-pi/2"], ["q2", 0, 160, 0], ["q3", 28, 0, "π/2"], ["q4", "250", 0, 0]],
+        [[0, 100, 20, -np.pi / 2], [0, 0, 160, 0], [0, 28, 0, np.pi / 2], [0, 250, 0, 0]],
+        np.array([[0, 100, 20, -1.5708], [0, 0, 160, 0], [0, 28, 0, 1.5708], [0, 250, 0, 0]]),
+        robots.quickshot(),
+    ],
+    ids=lambda v: type(v).__name__,
+)
+def test_the_table_of_the_book_in_any_dress(judge, table):
+    got = judge("table", table)
+    assert (got.verdict, got.points, got.message) == ("right", 4, "")
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        with_cells((1, "a", -20), (1, "alpha", pi / 2)),  # x1 turned round, with other zeros
+        with_cells((1, "a", -20), (1, "alpha", pi / 2), (1, "theta", t[0] + pi), (2, "theta", t[1] - pi)),
+        with_cells((2, "a", -160)),
+        with_cells((3, "alpha", -pi / 2)),
+        with_cells((3, "d", 0), (2, "d", 28)),  # d elsewhere along the parallel axes
+        with_cells((3, "d", 20), (2, "d", 8)),
+        with_cells((1, "alpha", pi / 2), (2, "theta", -t[1]), (2, "alpha", pi)),  # z1 turned round
+        with_cells((1, "alpha", pi / 2), (3, "alpha", -pi / 2), (3, "d", -28)),  # z1 and z2 turned round
+        with_cells((3, "alpha", -pi / 2), (4, "d", -250)),  # z3 turned round
+    ],
+)
+def test_every_valid_table_gets_full_marks(judge, table):
+    got = judge("table", table)
+    assert (got.verdict, got.points) == ("right", 4), got
+
+
+def test_what_the_library_places_itself_is_right(judge, arm):
+    end = arm.fk([0, 0, 0, 0])
+    placed = place_frames(arm.axes(), convention="classic", end=end)
+    chain = placed[0] if isinstance(placed, tuple) else placed
+    assert judge("table", chain).verdict == "right"
+
+
+@pytest.mark.parametrize(
+    ("table", "points", "key", "words"),
+    [
+        (with_cells((1, "d", 0)), 3, "ends", "frame 0 would not be where"),
+        (with_cells((4, "d", 0)), 3, "ends", "its origin is 250 mm away"),
+        (with_cells((1, "alpha", pi / 2)), 3, "sign", "α_1 has the wrong sign"),
+        (with_cells((3, "d", -28)), 3, "sign", "d_3 has the wrong sign"),
+        ([[r[0], r[1] / 1000, r[2] / 1000, r[3]] for r in RIGHT], 3, "unit", "a thousand times too small"),
+        ([[r[0], r[1], r[2], r[3] * 180 / pi] for r in RIGHT], 3, "degrees", "in radians"),
+        (robots.quickshot("modified"), 2, "convention", "modified convention; asked for is a classic"),
+        ([[r[0], r[1], *link] for r, link in zip(RIGHT, [(0, 0), (20, -pi / 2), (160, 0), (0, pi / 2)], strict=True)],
+         2, "convention", "right for the modified convention"),
+        ([[r[0], r[1], *link] for r, link in zip(RIGHT, [(160, 0), (0, pi / 2), (0, 0), (20, -pi / 2)], strict=True)],
+         1, "row", "one row too far up"),
+        ([[r[0], r[2], r[1], r[3]] for r in RIGHT], 1, "a_and_d", "a and d are exchanged"),
+        (with_cells((2, "d", 160), (2, "a", 0)), 1, "a_and_d", "a_2 and d_2 are exchanged"),
+        (with_cells((3, "theta", 0), (3, "d", t[2])), 1, "joint_kind", "Joint 3 is revolute"),
+        (with_cells((2, "a", 150)), 0, "", "axes 2 and 3"),
+        ([[x, 0, 100, 0] for x in t], 0, "", "axes 1 and 2"),
+        (RIGHT[:3], 0, "", "3 rows; the arm has 4 joints"),
+    ],
+)  # fmt: skip
+def test_the_ladder(judge, table, points, key, words):
+    got = judge("table", table)
+    assert not got.passed
+    assert (got.points, got.misconception) == (points, key), got
+    assert words in got.message, got
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ([[r[3], r[2], r[0], r[1]] for r in RIGHT], "stand as alpha, a, theta, d"),
+        (with_cells((1, "d", sp.Symbol("L"))), "no other symbol"),
+        (with_cells((2, "theta", t[0])), "no other symbol"),
+        (with_cells((1, "d", t[0])), "both theta and d are variable"),
+        (with_cells((2, "theta", 2 * t[1])), "no joint variable"),
+        ([], "empty"),
+        ([1, 2, 3, 4], "four"),
+        ([row[:3] for row in RIGHT], "four"),
+        (with_cells((1, "d", float("nan"))), "NaN"),
+        ("my table", "quotation marks"),
+        (pd.DataFrame(RIGHT, columns=["u", "v", "w", "x"]), "Columns are"),
+    ],
+)
+def test_tables_that_cannot_be_read(judge, table, words):
+    got = judge("table", table)
+    assert (got.verdict, got.points) == ("unreadable", 0)
+    assert words in got.message, got
+
+
+def ask(arm, **options):
+    return Part("table", "T", 4, Table(arm.convention, **options), arm=arm)
+
+
+def test_where_zeros_and_senses_are_given_they_count():
+    arm = robots.puma560("classic", "corke")
+    strict = ask(arm, free=())
+    zeros = Chain([j.replace(theta=0.5) if i == 2 else j for i, j in enumerate(arm.joints)], "classic", arm.base)
+    senses = Chain([j.replace(sign=-1) if i == 2 else j for i, j in enumerate(arm.joints)], "classic", arm.base)
+    for told, key, words in ((zeros, "offset", "another zero"), (senses, "sense", "the other way: write -q3 for q3")):
+        got = mark(strict, read_answer(strict.asks.request(), told))
+        assert (got.verdict, got.misconception) == ("nearly", key), got
+        assert words in got.message
+        free = ask(arm, free=("zeros", "senses"))
+        assert mark(free, read_answer(free.asks.request(), told)).verdict == "right"
+
+
+def test_ends_that_are_free_may_be_anywhere():
+    arm = robots.quickshot()
+    moved = Chain(arm.joints, "classic", base=Tz(5.0))
+    for free, verdict in ((("ends",), "right"), ((), "nearly")):
+        part = ask(arm, free=free)
+        assert mark(part, read_answer(part.asks.request(), moved)).verdict == verdict
+
+
+@pytest.mark.parametrize(("row", "field"), [(3, "alpha"), (3, "a"), (3, "d"), (4, "d")])
+def test_mirror_images_are_told(row, field):
+    """False friends of the PUMA 560: each of these signs alone gives the mirror image."""
+    arm = robots.puma560("classic", "corke")
+    part = ask(arm)
+    joint = arm.joints[row - 1]
+    joints = [*arm.joints[: row - 1], joint.replace(**{field: -getattr(joint, field)}), *arm.joints[row:]]
+    got = mark(part, read_answer(part.asks.request(), Chain(joints, "classic", arm.base, arm.tool)))
+    assert (got.verdict, got.points) == ("wrong", 1)
+    assert "mirror image" in got.message
+    assert f"_{row} has the wrong sign" in got.message
+
+
+def test_a_revolute_joint_taken_for_a_prismatic_one_is_told():
+    arm = robots.stanford()
+    part = ask(arm)
+    joints = [*arm.joints]
+    joints[2] = Revolute(d=0.3, a=joints[2].a, alpha=joints[2].alpha)
+    got = mark(part, read_answer(part.asks.request(), Chain(joints, "classic")))
+    assert got.message == "Joint 3 is prismatic: d varies and θ is constant."
