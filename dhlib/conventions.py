@@ -8,8 +8,12 @@ Both are words of two screws, one about z (θ and d: the joint) and one about x 
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+
 from dhlib.errors import DHError
-from dhlib.scalars import Scalar, cos_sin
+from dhlib.scalars import Scalar, cos_sin, exact, is_symbolic
 from dhlib.transforms import Pose, matrix, read_parameter
 
 CONVENTIONS = ("classic", "modified")
@@ -48,9 +52,8 @@ def classic(theta: Scalar, d: Scalar, a: Scalar, alpha: Scalar) -> Pose:
            [  0.,  -1.,   0., 100.],
            [  0.,   0.,   0.,   1.]])
     """
-    c, s = cos_sin(read_parameter(theta, "theta"))
-    ca, sa = cos_sin(read_parameter(alpha, "alpha"))
-    d, a = read_parameter(d, "d"), read_parameter(a, "a")
+    theta, d, a, alpha = _read(theta=theta, d=d, a=a, alpha=alpha)
+    (c, s), (ca, sa) = cos_sin(theta), cos_sin(alpha)
     return matrix(
         [
             [c, -s * ca, s * sa, a * c],
@@ -93,9 +96,8 @@ def modified(alpha: Scalar, a: Scalar, theta: Scalar, d: Scalar) -> Pose:
            [ 0., -1.,  0.,  0.],
            [ 0.,  0.,  0.,  1.]])
     """
-    ca, sa = cos_sin(read_parameter(alpha, "alpha"))
-    c, s = cos_sin(read_parameter(theta, "theta"))
-    d, a = read_parameter(d, "d"), read_parameter(a, "a")
+    alpha, a, theta, d = _read(alpha=alpha, a=a, theta=theta, d=d)
+    (ca, sa), (c, s) = cos_sin(alpha), cos_sin(theta)
     return matrix(
         [
             [c, -s, 0, a],
@@ -115,6 +117,19 @@ def link_screw(a: Scalar, alpha: Scalar) -> Pose:
     np.float64(20.0)
     """
     return classic(0, 0, a, alpha)
+
+
+def _read(**parameters: Any) -> list[Scalar]:
+    """The parameters as numbers; beside a symbol as exact numbers, so that -π/2 and 100 stay what they are."""
+    values = {name: read_parameter(value, name) for name, value in parameters.items()}
+    if any(is_symbolic(value) for value in values.values()):
+        for name, value in values.items():
+            if isinstance(value, np.ndarray):
+                raise DHError(
+                    f"{name} is an array, and another parameter a symbol; give numbers or symbols one by one."
+                )
+        return [exact(value, angle=name in ("theta", "alpha")) for name, value in values.items()]
+    return list(values.values())
 
 
 def read_convention(convention: object) -> str:

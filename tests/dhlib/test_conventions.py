@@ -33,6 +33,15 @@ def test_exact_twists_beside_symbols():
     assert link[2, 1] == 1
 
 
+@pytest.mark.parametrize("link", [classic, modified])
+def test_numbers_beside_a_symbol_stay_exact(link):
+    theta = sympy.Symbol("theta")
+    quarter = -np.pi / 2
+    arm = link(theta, 100, 20, quarter) if link is classic else link(quarter, 20, theta, 100)
+    assert arm.atoms(sympy.Float) == set()
+    assert arm[0, 3] == (20 * sympy.cos(theta) if link is classic else 20)
+
+
 def test_broadcasting():
     links = classic(np.zeros((5, 1)), 0, np.array([1.0, 2.0]), np.pi / 2)
     assert links.shape == (5, 2, 4, 4)
@@ -47,3 +56,8 @@ def test_no_number_is_refused_by_name(link, place):
     name = link.__code__.co_varnames[place]
     with pytest.raises(DHError, match=rf"^{name} is '90'"):
         link(*arguments)
+
+
+def test_an_array_beside_a_symbol_is_refused():
+    with pytest.raises(DHError, match="d is an array"):
+        classic(sympy.Symbol("theta"), [1, 2], 0, 0)
