@@ -12,6 +12,6 @@ await build({
   format: "iife",
   target: "es2022",
   charset: "utf8",
-  legalComments: "none",
+  legalComments: "eof",
   loader: { ".css": "text" },
 });

@@ -329,6 +329,9 @@ function beside(start, end) {
 
 /** How much of a line lies within a box, in pixels (Liang and Barsky, 1984). */
 function covered(start, end, centre, half) {
+  for (const k of [0, 1]) {
+    if (Math.max(start[k], end[k]) < centre[k] - half[k] || Math.min(start[k], end[k]) > centre[k] + half[k]) return 0;
+  }
   let [enter, leave] = [0, 1];
   for (const k of [0, 1]) {
     const run = end[k] - start[k];
@@ -357,7 +360,12 @@ function hull(points) {
   return [...half(sorted), ...half(sorted.reverse())];
 }
 
-const measured = (text) => pieces(text).reduce((sum, { text: part, index }) => sum + part.length * FONT * (index ? 0.44 : 0.58), 0);
+/** How wide a label is, about, in pixels. */
+function measured(text) {
+  if (!widths.has(text)) widths.set(text, pieces(text).reduce((sum, { text: part, index }) => sum + part.length * FONT * (index ? 0.44 : 0.58), 0));
+  return widths.get(text);
+}
+const widths = new Map();
 
 function spans(text) {
   let lowered = false;

@@ -14,7 +14,7 @@ import pytest
 from arms import EVERY_ROBOT, random_chain, random_pose
 from formulas import node_program
 
-from dhlib import Axis, Chain, Prismatic, Revolute, classic, inverse, modified, read_parameters
+from dhlib import Axis, Chain, Prismatic, Revolute, classic, inverse, modified, read_parameters, robots
 from dhlib.axes import product_of_exponentials
 from dhlib.errors import DHError
 from dhlib.export import chain_data, chain_json
@@ -263,6 +263,24 @@ def test_frames_that_obey_spell_a_table_that_moves_like_the_arm(convention: str)
     same, other = ask([["disagreement", chain, lines, poses[-1]], ["disagreement", chain, moved, poses[-1]]])
     assert same < TOLERANCE
     assert other > 0.1
+
+
+@pytest.mark.parametrize("convention", CONVENTIONS)
+def test_the_elbow_circle_keeps_its_distance_from_shoulder_and_wrist(convention: str) -> None:
+    """Every point of it is as far from both as the elbow is: the lengths of upper arm and forearm, from the table."""
+    arm = robots.pa10_7c(convention)
+    shoulder, upper, fore = 0.317, 0.45, 0.48
+    rng = np.random.default_rng(7)
+    for _ in range(20):
+        q = rng.uniform(-2, 2, 7)
+        (circle,) = ask([["elbowCircle", chain_data(arm), q.tolist()]])
+        centre, axis, elbow = (np.array(circle[key]) for key in ("centre", "axis", "elbow"))
+        first = (elbow - centre) / circle["radius"]
+        turn = rng.uniform(-3, 3)
+        point = centre + circle["radius"] * (np.cos(turn) * first + np.sin(turn) * np.cross(axis, first))
+        wrist = arm.to_classic().frames(q)[5, :3, 3]  # where axes 5, 6 and 7 meet
+        assert abs(np.linalg.norm(point - [0, 0, shoulder]) - upper) < TOLERANCE
+        assert abs(np.linalg.norm(point - wrist) - fore) < TOLERANCE
 
 
 def test_export_keeps_every_digit() -> None:

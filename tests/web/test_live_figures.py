@@ -208,6 +208,13 @@ def test_without_webgl_the_arm_is_drawn_flat_and_still_moves(browser: Any, home:
     assert not errors
 
 
+def test_a_broken_drawing_would_be_found(page: Any) -> None:
+    assert not broken_drawing(page)
+    page.evaluate(f"document.querySelector('{LINKS[0]}').change({{d: NaN}}, false)")
+    drawn(page)
+    assert broken_drawing(page)
+
+
 # {dh-link}
 
 
@@ -327,7 +334,9 @@ def test_the_view_turns_by_pointer_and_keys(page: Any) -> None:
 
 
 def test_touch_drags_a_slider_a_handle_and_the_view(browser: Any, home: str) -> None:
-    context = browser.new_context(viewport={"width": 390, "height": 800}, has_touch=True, is_mobile=True)
+    context = browser.new_context(
+        viewport={"width": 390, "height": 800}, has_touch=True, is_mobile=True, reduced_motion="reduce"
+    )
     page = context.new_page()
     page.goto(f"{home}/book/page.html")
     touch = context.new_cdp_session(page)
@@ -349,6 +358,7 @@ def test_touch_drags_a_slider_a_handle_and_the_view(browser: Any, home: str) -> 
     drag(x, y, 50, 0)
     moved = state(page, LINKS[0])
     assert moved["theta"] != before["theta"]
+    drawn(page)
     drag(*middle(f"{LINKS[0]} [data-grip=d]"), 0, -40)
     assert state(page, LINKS[0])["d"] > moved["d"]
     view = f"document.querySelector('{LINKS[0]}').stage.view.azimuth"
