@@ -39,8 +39,8 @@ def checker(name: str, exercises: str | None = None) -> Checker:
     Examples
     --------
     >>> check = checker("quickshot")
-    >>> check("slip", "n_y")
-    slip: right.
+    >>> check
+    check(part, answer) of the exercise quickshot
     """
     from dhlib.grading.check import Checker
 

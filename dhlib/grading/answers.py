@@ -106,7 +106,10 @@ def _read_formula(request: Request, value: Any) -> Reading:
         raise _Fault("long")
     symbols = [sympy.Symbol(name) for name in request["symbols"]]
     formulas = _in_known_symbols(formulas, symbols)
-    return {"values": [_nested(values, shape) for values in _evaluate(formulas, symbols, request["points"])]}
+    values = _evaluate(formulas, symbols, request["points"])
+    if any(all(entry is None for entry in entries) for entries in zip(*values, strict=True)):
+        raise _Fault("nan")
+    return {"values": [_nested(entries, shape) for entries in values]}
 
 
 def _read_function(request: Request, value: Any) -> Reading:

@@ -91,6 +91,8 @@ def find_notebooks(path: Path) -> list[Path]:
 
 
 def _grade_all(paths: Sequence[Path], options: argparse.Namespace) -> Iterator[Result]:
+    import sympy  # noqa: F401  before the threads: one that finds it half imported would fail
+
     def grade_one(path: Path) -> Result:
         try:
             return grade_notebook(path, options.exercise, options.exercises, options.timeout)

@@ -19,7 +19,7 @@ from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, Tabl
 from dhlib.grading.frames import judge_frames
 from dhlib.grading.marks import COARSE, FOLLOWS, NEARLY, OPEN, RIGHT, UNREADABLE, WRONG, Mark, make_mark
 from dhlib.grading.misconceptions import KNOWN, name_one, would_have_given
-from dhlib.grading.poses import describe, improper
+from dhlib.grading.poses import describe, improper, listed
 from dhlib.grading.tables import judge_table
 from dhlib.scalars import FloatArray
 
@@ -136,7 +136,7 @@ def wanted(part: Part) -> str:
         case Table():
             return f"a DH table with {part.chain.n} rows"
         case Frames():
-            return f"a list of {part.asks.count} matrices, 4 by 4"
+            return f"a list of {part.asks.count} matrices of 4 by 4"
         case Function():
             return f"a function {part.asks.signature} that returns {_array_text(part.asks.shape)}"
         case Formula():
@@ -273,5 +273,5 @@ def _follows(part: Part, asks: Valued, values: FloatArray, earlier: Mapping[str,
         return None
     if not agree(values, np.array([rule.rule(*at_probe) for at_probe in zip(*arrays, strict=True)]), asks.tolerances):
         return None
-    names = " and ".join(start.mark.part for start in starts if start.mark.verdict != RIGHT)
-    return make_mark(part, FOLLOWS, f"It follows from your {names}, not right yet: mend that, and then this.")
+    names = [start.mark.part for start in starts if start.mark.verdict != RIGHT]
+    return make_mark(part, FOLLOWS, f"It follows from your {listed(names)}, not right yet: mend that, and then this.")

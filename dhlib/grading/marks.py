@@ -65,7 +65,7 @@ def make_mark(
     part : Part
     verdict, message : str
     credit : float
-        Which part of the points is earned, where the answer does not pass.
+        Which part of the points is earned, where the answer does not pass; to the nearest quarter of a point.
     known : Misconception, optional
         The one that fits.
     """
@@ -73,7 +73,7 @@ def make_mark(
     passed = verdict in (RIGHT, FOLLOWS)
     return Mark(
         part.id,
-        round(part.points * (1.0 if passed else credit), 2),
+        part.points if passed else round(4 * part.points * credit) / 4,
         part.points,
         verdict,
         message,

@@ -61,7 +61,7 @@ class Slip:
 KNOWN = {
     known.key: known
     for known in (
-        Misconception(1, "convention", "the convention: classic or modified", "sec-quickshot-modified", 0.5),
+        Misconception(1, "convention", "the convention: classic or modified", "sec-modified-product", 0.5),
         Misconception(2, "row", "the row in which a and α stand", "sec-classic-trap-row"),
         Misconception(3, "offset", "the offset between q and θ", "sec-classic-variable", 0.5),
         Misconception(4, "sense", "the sense in which a joint turns", "sec-classic-variable", 0.5),
@@ -76,6 +76,7 @@ KNOWN = {
         Misconception(13, "joint_kind", "which parameter the joint moves", "sec-classic-variable"),
         Misconception(14, "steps", "the order of the four steps", "sec-classic-trap-order"),
         Misconception(15, "improper", "whether the matrix is a rotation at all", "sec-pose", 0.0),
+        Misconception(16, "entrywise", "* and @", "sec-trap-order"),
     )
 }
 #: A wrong answer that one exercise knows of itself.
@@ -101,11 +102,10 @@ def retellings(chain: Chain) -> Told:
     yield from _parameters(chain)
     yield from _ends(chain)
     yield from _units(chain)
-    yield (
-        "reverse",
-        "The factors of {part} stand in reverse order: the link nearest the base comes first.",
-        Retelling(chain, reverse=True),
-    )
+    says = "The factors of {part} stand in reverse order: the link nearest the base comes first."
+    yield "reverse", says, Retelling(chain, reverse=True)
+    says = "{part} is multiplied entry by entry: for arrays the product of matrices is @, and * is another thing."
+    yield "entrywise", says, Retelling(chain, entrywise=True)
     yield from _orders(chain)
 
 

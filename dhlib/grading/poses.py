@@ -68,13 +68,22 @@ def _describe_pose(values: FloatArray, right: FloatArray, off: NDArray[np.bool_]
         distance = np.nanmax(np.linalg.norm((values - right)[:, :3, 3], axis=-1))
         return f"The rotation is right; the position p is {distance:.3g} {unit} away from where it should be."
     if "p" not in wrong:
-        return f"The position p is right; the rotation is not: see column{'s' if len(wrong) > 1 else ''} {_and(wrong)}."
+        return (
+            f"The position p is right; the rotation is not: see column{'s' if len(wrong) > 1 else ''} {listed(wrong)}."
+        )
     fine = [name for name in COLUMNS if name not in wrong]
     if fine:
-        right_ones = f"Column{'s' if len(fine) > 1 else ''} {_and(fine)} {'are' if len(fine) > 1 else 'is'} right"
-        return f"{right_ones}; {_and(wrong)} {'are' if len(wrong) > 1 else 'is'} not."
+        right_ones = f"Column{'s' if len(fine) > 1 else ''} {listed(fine)} {'are' if len(fine) > 1 else 'is'} right"
+        return f"{right_ones}; {listed(wrong)} {'are' if len(wrong) > 1 else 'is'} not."
     return "Neither the rotation nor the position is right yet. Compare your link matrices one by one, from the base."
 
 
-def _and(names: list[str]) -> str:
+def listed(names: list[str]) -> str:
+    """Names in a sentence.
+
+    Examples
+    --------
+    >>> listed(["n", "o", "p"])
+    'n, o and p'
+    """
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -34,6 +34,8 @@ class Retelling:
         The four steps of each link, in another order.
     reverse : bool
         The link matrices multiplied in reverse order.
+    entrywise : bool
+        The link matrices multiplied entry by entry.
     joint_scale, twist_scale : float
         Joint angles and twists taken in a wrong unit.
     """
@@ -41,6 +43,7 @@ class Retelling:
     chain: Chain
     steps: tuple[str, ...] = ()
     reverse: bool = False
+    entrywise: bool = False
     joint_scale: float = 1.0
     twist_scale: float = 1.0
 
@@ -75,15 +78,23 @@ class Retelling:
 
     def T(self, i: int, j: int, q: Any) -> FloatArray:
         """Frame j in frame i, as told."""
+        if i == j:
+            return np.eye(4)
         if i > j:
             back: FloatArray = inverse(self.T(j, i, q))
             return back
         matrices = [self.A(k, q) for k in range(i + 1, j + 1)]
+        if self.entrywise:
+            entries: FloatArray = np.prod(matrices, axis=0)
+            return entries
         product: FloatArray = reduce(np.matmul, reversed(matrices) if self.reverse else matrices, np.eye(4))
         return product
 
     def fk(self, q: Any) -> FloatArray:
         """Tool in world, as told."""
+        if self.entrywise:
+            entries: FloatArray = np.prod([self.base, self.T(0, self.n, q), self.tool], axis=0)
+            return entries
         pose: FloatArray = self.base @ self.T(0, self.n, q) @ self.tool
         return pose
 

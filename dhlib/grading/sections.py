@@ -18,6 +18,9 @@ CHAPTERS = {
         "sec-classic-trap-order": "The twist too early",
         "sec-classic-trap-row": "Link and joint one row apart",
     },
+    "The modified convention": {
+        "sec-modified-product": "The general link matrix",
+    },
     "Quickshot: a worked arm": {
         "sec-quickshot-frames": "Five frames",
         "sec-quickshot-table": "The table, row by row",
@@ -26,7 +29,6 @@ CHAPTERS = {
         "sec-quickshot-slip": "A slip in print",
         "sec-base-and-tool": "Base and tool",
         "sec-quickshot-tables": "The same arm, other tables",
-        "sec-quickshot-modified": "In the other convention",
     },
 }
 

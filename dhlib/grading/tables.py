@@ -19,6 +19,7 @@ from dhlib.grading.exercise import Part
 from dhlib.grading.forms import Table
 from dhlib.grading.marks import NEARLY, RIGHT, UNREADABLE, WRONG, Mark, make_mark
 from dhlib.grading.misconceptions import KNOWN, OTHER, Slip, name_one, retellings
+from dhlib.grading.poses import listed
 from dhlib.grading.retelling import scaled
 from dhlib.mechanism import FREEDOMS, Sameness, same_mechanism
 from dhlib.scalars import FloatArray
@@ -257,8 +258,7 @@ def _stays(end: FloatArray, asks: Table, reference: Chain) -> bool:
 
 
 def _joints(numbers: list[int]) -> str:
-    words = [str(number) for number in numbers]
-    return f"joint {words[0]}" if len(words) == 1 else f"joints {', '.join(words[:-1])} and {words[-1]}"
+    return f"joint{'s' if len(numbers) > 1 else ''} {listed([str(number) for number in numbers])}"
 
 
 def _sentence(text: str) -> str:

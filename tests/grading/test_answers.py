@@ -18,6 +18,7 @@ from dhlib.grading import answers
 from dhlib.grading.answers import MISSING, read_answer
 from dhlib.grading.faults import SENTENCES, sentence
 
+pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass:PendingDeprecationWarning")
 MATRIX = {"form": "numbers", "shape": [2, 2]}
 VECTOR = {"form": "numbers", "shape": [3]}
 NUMBER = {"form": "numbers", "shape": []}

@@ -15,6 +15,7 @@ from dhlib.grading.exercise import Exercise, Follows, Part, load_exercise
 from dhlib.grading.forms import Choice, Formula, Function, Numbers, Valued
 from dhlib.grading.marking import Marker, mark
 
+pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass:PendingDeprecationWarning")
 theta = sp.symbols("theta1:5")
 
 

@@ -72,6 +72,7 @@ def test_a_misconception_of_one_part_is_named_exactly(judge, arm, solved, exerci
         "degrees": ("A2", arm.A(2, np.deg2rad(q)), "wrong unit"),
         "unit": ("A1", _metres(solved["A1"]), "1000 times too small"),
         "reverse": ("T4", solved["A4"] @ solved["A3"] @ solved["A2"] @ solved["A1"], "reverse order"),
+        "entrywise": ("T4", solved["A1"] * solved["A2"] * solved["A3"] * solved["A4"], "entry by entry"),
         "transpose": ("T4", solved["T4"].T, "transposed"),
     }
     for key, (part, value, words) in cases.items():
