@@ -66,6 +66,8 @@ class LiveFigure(SphinxDirective):
         """Return a figure with the element and the caption."""
         figure = nodes.figure("", classes=["live-figure"])
         self.set_source_info(figure)
+        for path in SOURCES.iterdir():  # the page names the edition of its scripts
+            self.env.note_dependency(str(path))
         serial = self.env.new_serialno(f"dh-{self.kind}") + 1
         try:
             data, (svg, alt) = self.data(), self.still()
