@@ -38,7 +38,12 @@ def is_symbolic(value: object) -> bool:
     True
     """
     sympy = sys.modules.get("sympy")
-    return sympy is not None and isinstance(value, (sympy.Basic, sympy.MatrixBase))
+    if sympy is None:
+        return False
+    try:
+        return isinstance(value, (sympy.Basic, sympy.MatrixBase))
+    except AttributeError:  # another thread is importing sympy right now, so nothing can be of it yet
+        return False
 
 
 def has_symbols(values: Any) -> bool:
