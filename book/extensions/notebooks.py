@@ -315,7 +315,7 @@ class Text:
             self.cited.append(key)
             names = [" ".join(person.last_names) for person in self.works[key].persons["author"]]
             who = names[0] + (" et al." if len(names) > 2 else f" and {names[1]}" if len(names) == 2 else "")
-            year = self.works[key].fields["year"]
+            year = self.works[key].fields.get("year", "n.d.")
             shown.append(f"{who} {year}" if parenthesised else f"{who} ({year})")
         return f"({'; '.join(shown)})" if parenthesised else ", ".join(shown)
 
