@@ -325,7 +325,7 @@ class Text:
         names = ", ".join(str(person).replace(",", "") for person in entry.persons["author"])
         where = entry.fields.get("journal") or entry.fields.get("booktitle") or entry.fields.get("publisher", "")
         title, where = (re.sub(r"[{}]", "", words) for words in (entry.fields["title"], where))
-        return f"{names} ({entry.fields['year']}). *{title}*. {where}."
+        return f"{names} ({entry.fields.get('year', 'n.d.')}). *{title}*. {where}."
 
     @property
     def works(self) -> Any:
