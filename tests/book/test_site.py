@@ -40,6 +40,7 @@ def unexpected(files: set[str], pages: dict[str, Path]) -> set[str]:
     allowed |= {f"notebooks/{source.stem}.ipynb" for source in pages.values() if source.parent.name == "book"}
     static = re.compile(
         r"_static/.*\.(css|js|svg|png|woff2|LICENSE\.txt)|_images/[\w.-]+\.(svg|png)|_downloads/[0-9a-f]{32}/[\w.-]+"
+        r"|live/(link|robot|place|space)\.js"
     )
     return {name for name in files - allowed if not static.fullmatch(name)}
 
