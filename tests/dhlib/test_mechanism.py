@@ -530,6 +530,19 @@ def test_nearly_parallel_axes_in_disguise():
         assert_same(rows.chain(), arm, accuracy=5e-6)
 
 
+def test_a_slant_within_the_tolerance_may_be_meant_or_not():
+    slant = 5e-4
+    calibrated = Chain([Revolute(a=0.4, alpha=slant), Revolute(a=0.3, alpha=1, d=0.2), Revolute()], "classic")
+    straight = changed(calibrated, 1, alpha=0.0)
+    turned = changed(changed(calibrated, 1, theta=1.0), 2, theta=-0.5)
+    assert_not_same(turned, straight)
+    assert_same(turned, calibrated, tol=1e-3, accuracy=1e-9)  # meant: the slants are laid on one another
+    verdict = assert_same(turned, straight, tol=1e-3, accuracy=1e-3)  # an error: the distance decides
+    assert verdict.certificate_error > 1e-5
+    meeting, turned = (changed(arm, 1, a=0.0) for arm in (calibrated, turned))
+    assert_same(turned, meeting, tol=1e-3, accuracy=1e-9)  # no distance: the slants alone tell how far to turn
+
+
 # Known pairs
 
 
