@@ -240,7 +240,8 @@ class Text:
         if name == "math":
             return self.equation("\n".join(inside), options.get("label", ""))
         if name == "glue":
-            return self.glued[argument].get("markdown", self.glued[argument]["plain"]).split("\n")
+            kept = self.glued[argument]
+            return [self.inline(line) for line in kept.get("markdown", kept["plain"]).split("\n")]
         if name == "glue:figure":
             return self.figure(argument, options.get("name", ""), self.convert("\n".join(inside)))
         if name == "bibliography":
@@ -322,7 +323,7 @@ class Text:
     def work(self, key: str) -> str:
         """Return a line of the bibliography."""
         entry = self.works[key]
-        names = ", ".join(str(person).replace(",", "") for person in entry.persons["author"])
+        names = ", ".join(str(person).replace(",", "") for person in entry.persons.get("author", []))
         where = entry.fields.get("journal") or entry.fields.get("booktitle") or entry.fields.get("publisher", "")
         title, where = (re.sub(r"[{}]", "", words) for words in (entry.fields["title"], where))
         return f"{names} ({entry.fields.get('year', 'n.d.')}). *{title}*. {where}."
