@@ -76,16 +76,18 @@ class Joint:
         return (varied, self.d) if self.kind == "R" else (self.theta, varied)
 
     def replace(self, **changes: Any) -> Joint:
-        """Return the joint with some of theta, d, a, alpha, limits and sign changed.
+        """Return the joint with some of theta, d, a, alpha, limits, sign and offset changed.
 
         Examples
         --------
         >>> Revolute(d=2, a=1).replace(a=3)
         Revolute(d=2, a=3)
         """
-        new = {name: getattr(self, name) for name in ("theta", "d", "a", "alpha", "limits", "sign")} | changes
+        new = {name: getattr(self, name) for name in ("theta", "d", "a", "alpha", "limits", "sign")}
         new["offset"] = new.pop(self.variable)
-        return type(self)(**new)
+        if self.variable in changes:
+            changes["offset"] = changes.pop(self.variable)
+        return type(self)(**new | changes)
 
     def __repr__(self) -> str:
         from dhlib.show import joint_text
