@@ -65,6 +65,27 @@ CHANGES = {
         ("Revolute(d=0, a=160, alpha=0, offset=180", "Revolute(d=0, a=160, alpha=0, offset=90"),
         ("Revolute(d=-28, a=0, alpha=-90", "Revolute(d=28, a=0, alpha=-90"),
     ],
+    "puma560": [
+        ("Axis(wrist, -z),            # 4", "Axis(wrist, z),             # 4"),
+        ("frame(x, y, [A2, D3, 0]),   # 3", "frame(x, y, [A2, -D3, 0]),  # 3"),
+        ("S23 = C2 * S3 + S2 * C3", "S23 = C2 * S3 - S2 * C3"),
+        ("r = a2 * C2 + a3 * cosine - d4 * sine", "r = a2 * C2 + a3 * cosine + d4 * sine"),
+        ("a=-joints[k].a, alpha=-joints[k].alpha", "a=joints[k].a, alpha=-joints[k].alpha"),
+        ("shift = np.array([180, 180,", "shift = np.array([180, 0,"),
+        ("a2=row_3.a, a3=-row_4.a, d3=row_2.d + row_3.d", "a2=row_3.a, a3=-row_4.a, d3=row_2.d - row_3.d"),
+        ("theta5: -theta5,", "theta5: theta5,"),
+        ('{"alpha_3", "a_3"}, {"alpha_4"}', '{"alpha_3"}, {"alpha_4"}'),
+    ],
+    "proofreading": [
+        ("    [-S5, -C5, 0, 0],\n", "    [S5, C5, 0, 0],\n"),
+        ("T_45 = Rx(sp.pi / 2)", "T_45 = Rx(-sp.pi / 2)"),
+        ("n_y = S1 * C4 * (C2 * C3 - S2 * S3)", "n_y = S1 * C4 * (C2 * C3 + S2 * S3)"),
+        ("    + S1 * (S4 * C5 * C6 + C4 * S6),", "    - S1 * (S4 * C5 * C6 + C4 * S6),"),
+        ("replace(d=-d4)", "replace(d=d4)"),
+        ("- a2 * S2 - d4 * C23", "- a2 * S2 + d4 * C23"),
+        ("aside = Ty(20) @ Tz(100)", "aside = Tx(20) @ Tz(100)"),
+        ("sp.atan2(-link[1, 2], link[2, 2])", "sp.atan2(link[1, 2], link[2, 2])"),
+    ],
 }
 
 
