@@ -26,10 +26,13 @@ class Trap:
         What to tell the student.
     quantity : callable
         What such a student hands in: ``quantity(arm, *probe)``.
+    key : str
+        Key of the known misconception that it is, if it is one.
     """
 
     says: str
     quantity: Quantity
+    key: str = "trap"
 
 
 @dataclass(frozen=True)

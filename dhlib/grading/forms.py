@@ -158,8 +158,8 @@ class Function(Valued):
 
 
 def _plain(argument: Any) -> Any:
-    """An argument as JSON has it: a number, or a list of floats."""
-    return argument if np.ndim(argument) == 0 else [float(item) for item in argument]
+    """An argument as JSON has it: a number, or nested lists of floats."""
+    return argument if np.ndim(argument) == 0 else np.asarray(argument, dtype=float).tolist()
 
 
 @dataclass(frozen=True)

@@ -7,18 +7,18 @@ to, with the words for it. All words about misconceptions stand here and nowhere
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise, permutations
+from itertools import islice, pairwise, permutations
 from typing import Any
 
 import numpy as np
 
 from dhlib.chain import Chain
 from dhlib.errors import DHError, DHWarning
-from dhlib.grading.exercise import Part
-from dhlib.grading.forms import Arm, Valued
+from dhlib.grading.exercise import Part, Trap
+from dhlib.grading.forms import Arm, Probe, Quantity, Valued
 from dhlib.grading.retelling import ORDER, Retelling, altered, in_degrees, scaled, with_ends, with_joints
 from dhlib.joints import Joint, Prismatic, Revolute
 from dhlib.scalars import FloatArray
@@ -274,6 +274,25 @@ def _orders(chain: Chain) -> Told:
             )
 
 
+def retold(chain_at: Callable[..., Chain], quantity: Quantity, example: Probe) -> list[Trap]:
+    """Traps for a quantity whose arm is made from the probe itself, such as a link matrix as a function.
+
+    Parameters
+    ----------
+    chain_at : callable
+        ``chain_at(*probe)``, the arm of a probe.
+    quantity : callable
+        ``quantity(arm, *probe)``, as for a part; it is asked of every retelling of that arm.
+    example : tuple
+        Any probe: which retellings there are must not depend on it.
+    """
+
+    def told(k: int) -> Quantity:
+        return lambda _, *probe: quantity(next(islice(retellings(chain_at(*probe)), k, None))[2], *probe)
+
+    return [Trap(says, told(k), key) for k, (key, says, _) in enumerate(retellings(chain_at(*example)))]
+
+
 def finishings(values: FloatArray) -> Iterator[tuple[str, str, FloatArray]]:
     """Right poses (…, 4, 4), handed in as something else."""
     rotated = values.copy()
@@ -319,7 +338,7 @@ def _would_have_given(part: Part) -> Iterator[tuple[Slip, FloatArray]]:
         return
     for trap in part.traps:
         yield (
-            Slip(TRAP, trap.says),
+            Slip(KNOWN.get(trap.key, TRAP), trap.says.replace("{part}", part.id)),
             np.array([np.asarray(trap.quantity(part.chain, *p), dtype=float) for p in asks.probes]),
         )
     with warnings.catch_warnings():
