@@ -15,6 +15,8 @@ from dhlib.grading.marking import mark
 ROOT = Path(__file__).parents[2]
 SOLUTION = ROOT / "solutions" / "quickshot.ipynb"
 PRISTINE = ROOT / "exercises" / "quickshot.ipynb"
+#: Every exercise: a solution is its source.
+NAMES = sorted(path.stem for path in (ROOT / "solutions").glob("*.ipynb"))
 
 
 def load(path):
@@ -26,6 +28,30 @@ def exercise():
     return load_exercise("quickshot", ROOT / "exercises")
 
 
+@pytest.fixture(scope="session", params=NAMES)
+def name(request):
+    """Each exercise in turn."""
+    return request.param
+
+
+@pytest.fixture(scope="session")
+def every(name):
+    """What each exercise asks."""
+    return load_exercise(name, ROOT / "exercises")
+
+
+@pytest.fixture(scope="session")
+def worked(name):
+    """The solution notebook of each exercise."""
+    return load(ROOT / "solutions" / f"{name}.ipynb")
+
+
+@pytest.fixture(scope="session")
+def results(worked):
+    """The variables of each solution."""
+    return run(worked)
+
+
 @pytest.fixture(scope="session")
 def arm(exercise):
     return exercise.part("table").chain
@@ -33,10 +59,15 @@ def arm(exercise):
 
 @pytest.fixture(scope="session")
 def solved():
-    """The variables of the solution, after all of its cells ran here."""
+    """The variables of the solution."""
+    return run(load(SOLUTION))
+
+
+def run(notebook):
+    """The variables of a notebook, after all of its cells ran here."""
     names = {}
     with contextlib.redirect_stdout(io.StringIO()):
-        for cell in load(SOLUTION)["cells"]:
+        for cell in notebook["cells"]:
             if cell["cell_type"] == "code":
                 exec("".join(cell["source"]), names)  # our own notebook
     return names

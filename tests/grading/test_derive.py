@@ -11,7 +11,6 @@ from dhlib.grading.derive import as_text, derive, main, open_regions
 
 ROOT = Path(__file__).parents[2]
 SOLUTION = ROOT / "solutions" / "quickshot.ipynb"
-PRISTINE = ROOT / "exercises" / "quickshot.ipynb"
 MARKER = "MARKER-7f3a"
 
 
@@ -20,13 +19,22 @@ def solution():
     return json.loads(SOLUTION.read_text(encoding="utf-8"))
 
 
-def test_the_exercise_is_what_its_solution_gives(solution):
-    assert PRISTINE.read_text(encoding="utf-8") == as_text(derive(solution, "quickshot")), "run make exercises"
+def test_every_exercise_is_whole():
+    stems = [
+        {path.stem for path in ROOT.glob(files)}
+        for files in ("solutions/*.ipynb", "exercises/*.ipynb", "exercises/*.py")
+    ]
+    assert stems[0] == stems[1] == stems[2]
 
 
-def test_exercise_is_solution_minus_bodies_cell_by_cell(solution):
-    derived = {cell["id"]: cell for cell in derive(solution, "quickshot")["cells"]}
-    kept = [cell for cell in solution["cells"] if cell["metadata"]["dh"]["role"] != "solution"]
+def test_the_exercise_is_what_its_solution_gives(name, worked):
+    pristine = (ROOT / "exercises" / f"{name}.ipynb").read_text(encoding="utf-8")
+    assert pristine == as_text(derive(worked, name)), "run make exercises"
+
+
+def test_exercise_is_solution_minus_bodies_cell_by_cell(name, worked):
+    derived = {cell["id"]: cell for cell in derive(worked, name)["cells"]}
+    kept = [cell for cell in worked["cells"] if cell["metadata"]["dh"]["role"] != "solution"]
     assert list(derived) == [cell["id"] for cell in kept]
     for cell in kept:
         source = "".join(cell["source"])
@@ -38,8 +46,8 @@ def test_exercise_is_solution_minus_bodies_cell_by_cell(solution):
             assert mine == source
 
 
-def test_markers_planted_everywhere_are_gone(solution):
-    planted = copy.deepcopy(solution)
+def test_markers_planted_everywhere_are_gone(name, worked):
+    planted = copy.deepcopy(worked)
     planted["metadata"][MARKER] = MARKER
     planted["metadata"]["kernelspec"]["display_name"] = MARKER
     for cell in planted["cells"]:
@@ -55,32 +63,33 @@ def test_markers_planted_everywhere_are_gone(solution):
             cell["source"] = source.replace("### solution\n", f"### solution\n# {MARKER}\nx = '{MARKER}'\n")
         elif cell["metadata"]["dh"]["role"] == "solution":
             cell["source"] = [MARKER]
-    assert as_text(planted).count(MARKER) > 300
-    text = as_text(derive(planted, "quickshot"))
+    assert as_text(planted).count(MARKER) > 5 * len(planted["cells"])
+    text = as_text(derive(planted, name))
     assert MARKER not in text
     assert '"execution_count": 7' not in text
-    assert text == as_text(derive(solution, "quickshot"))
+    assert text == as_text(derive(worked, name))
 
 
-def test_no_line_of_a_solution_is_left(solution):
-    text = as_text(derive(solution, "quickshot"))
+def test_no_line_of_a_solution_is_left(name, worked):
+    text = as_text(derive(worked, name))
     lines = set()
-    for cell in solution["cells"]:
+    for cell in worked["cells"]:
         source = "".join(cell["source"])
         if "### solution" in source:
             body = source.split("### solution\n")[1].split("### yours")[0]
             stub = source.split("### yours")[1]
             lines.update(line.strip() for line in body.splitlines() if len(line.strip()) > 12 and line not in stub)
-    assert len(lines) > 40
+    assert len(lines) > 10
     assert [line for line in lines if json.dumps(line)[1:-1] in text] == []
 
 
-def test_stubs_never_raise_by_themselves(solution):
+def test_stubs_never_raise_by_themselves(name, worked, every):
     names = {}
-    for cell in derive(solution, "quickshot")["cells"]:
+    for cell in derive(worked, name)["cells"]:
         if cell["metadata"]["dh"]["role"] in ("setup", "answer"):
             exec("".join(cell["source"]), names)
-    assert names["A1"] is ...
+    assert {part.id for part in every.parts} <= set(names)
+    assert any(names[part.id] is ... for part in every.parts)
 
 
 @pytest.mark.parametrize(
@@ -130,9 +139,9 @@ def test_drift_is_reported_and_mended(tmp_path, capsys):
     assert main([*folders, "--check"]) == 1
 
 
-def test_the_stored_outputs_of_the_solution_say_right(solution):
-    checks = [cell for cell in solution["cells"] if cell["metadata"]["dh"]["role"] == "check"]
-    assert len(checks) == 18
+def test_the_stored_outputs_of_the_solution_say_right(worked, every):
+    checks = [cell for cell in worked["cells"] if cell["metadata"]["dh"]["role"] == "check"]
+    assert [cell["metadata"]["dh"]["part"] for cell in checks] == [part.id for part in every.parts]
     for cell in checks:
         (output,) = cell["outputs"]
         assert "".join(output["text"]).startswith(f"{cell['metadata']['dh']['part']}: right.")

@@ -16,8 +16,6 @@ from dhlib.grading.check import Checker, CheckFailed, tell
 from dhlib.grading.grade import grade_notebook
 
 ROOT = Path(__file__).parents[2]
-SOLUTION = ROOT / "solutions" / "quickshot.ipynb"
-PRISTINE = ROOT / "exercises" / "quickshot.ipynb"
 
 #: Whole hand-ins. Each part is answered in every one of them, rightly or wrongly, in many ways.
 ARM = """\
@@ -196,23 +194,25 @@ def test_the_hand_ins_are_what_they_are_meant_to_be(notebooks):
 
 
 @pytest.mark.notebooks
-def test_the_solution_gets_full_marks_by_every_face(tmp_path):
-    result = grade_notebook(SOLUTION)
-    assert (result.status, result.points, result.out_of) == ("graded", 30, 30)
-    cases, _ = pytest_on(tmp_path, "--nbval", str(SOLUTION))  # all stored outputs compared
+def test_the_solution_gets_full_marks_by_every_face(every, worked, tmp_path):
+    solution = ROOT / "solutions" / f"{every.name}.ipynb"
+    result = grade_notebook(solution)
+    assert (result.status, result.points, result.out_of) == ("graded", every.points, every.points)
+    cases, _ = pytest_on(tmp_path, "--nbval", str(solution))  # all stored outputs compared
     assert [case.get("name") for case in cases if len(case)] == []
-    assert len(cases) == 38
-    cases, said = pytest_on(tmp_path, "--dh-grade", str(SOLUTION))
-    assert len(cases) == 18
-    assert "18 passed" in said
-    assert "solutions/quickshot.ipynb: 30 of 30 points" in said
+    assert len(cases) == sum(cell["cell_type"] == "code" for cell in worked["cells"])
+    cases, said = pytest_on(tmp_path, "--dh-grade", str(solution))
+    assert len(cases) == len(every.parts)
+    assert f"{len(every.parts)} passed" in said
+    assert f"solutions/{every.name}.ipynb: {every.points:g} of {every.points:g} points" in said
 
 
 @pytest.mark.notebooks
-def test_the_untouched_exercise_gets_none_by_any_face(tmp_path):
-    assert grade_notebook(PRISTINE).points == 0
-    assert not any(by_nbval(PRISTINE, tmp_path).values())
-    assert not any(passed for passed, _, _ in by_pytest(PRISTINE, tmp_path).values())
+def test_the_untouched_exercise_gets_none_by_any_face(name, tmp_path):
+    pristine = ROOT / "exercises" / f"{name}.ipynb"
+    assert grade_notebook(pristine).points == 0
+    assert not any(by_nbval(pristine, tmp_path).values())
+    assert not any(passed for passed, _, _ in by_pytest(pristine, tmp_path).values())
 
 
 @pytest.mark.notebooks
