@@ -34,11 +34,13 @@ endif
 export UV_PYTHON_DOWNLOADS := never
 export UV_NO_CONFIG := 1
 
-.PHONY: help book serve test lint exercises lock venv clean distclean
+.PHONY: help book serve pdf zip test lint exercises lock venv clean distclean
 .DELETE_ON_ERROR:
 
 help:
 	@echo 'make book       build the book into _build/html and print its address'
+	@echo 'make pdf        print the whole book into dist/dh-book.pdf (needs Chromium)'
+	@echo 'make zip        pack the book, its notebooks and the library into dist/dh-book.zip, to read offline'
 	@echo 'make test       lint, types and all tests'
 	@echo 'make serve      build the book, serve it on this machine and open it'
 	@echo 'make lint       lint and types only'
@@ -57,7 +59,15 @@ book: $(READY)
 serve: book
 	@$(RUN) book/build/serve.py _build/html
 
-lint: $(VENV_READY)
+pdf: book
+	@echo '── the book as a PDF ──'
+	@$(RUN) book/build/pdf.py _build/html dist/dh-book.pdf
+
+zip: book
+	@echo '── the book to take along ──'
+	@$(RUN) book/build/offline.py _build/html dist/dh-book.zip
+
+lint: $(READY)
 	@echo '── lint and types ──'
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
