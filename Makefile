@@ -123,5 +123,5 @@ COMPILE := UV_CUSTOM_COMPILE_COMMAND='make lock' $(UV) pip compile --quiet --uni
 lock: $(UV_READY)
 	$(COMPILE) --group bootstrap -o requirements/bootstrap.lock
 	$(COMPILE) --group node -o requirements/node.lock
-	$(COMPILE) pyproject.toml --all-extras --group dev -o requirements/dev.lock
+	$(COMPILE) --override requirements/override.txt pyproject.toml --all-extras --group dev -o requirements/dev.lock
 	$(NPM) update --package-lock-only
