@@ -72,6 +72,7 @@ lint: $(READY)
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
+	@$(RUN) book/build/spelling.py
 	@$(BIN)/codespell book README.md CONTRIBUTING.md CHANGELOG.md dhlib tests exercises
 
 test: lint $(NODE_READY)
