@@ -4,7 +4,12 @@ from __future__ import annotations
 
 CHAPTERS = {
     "Frames and homogeneous transforms": {
+        "sec-homogeneous": "Position and orientation in one matrix",
+        "sec-noap": "Reading a pose",
+        "sec-atomic": "Six atomic transforms",
+        "sec-composition": "Composition: from the right, from the left",
         "sec-inverse": "Going back",
+        "sec-chain-product": "Chains and their indices",
         "sec-pose": "Is it a pose?",
         "sec-trap-degrees": "Degrees taken for radians",
         "sec-trap-rows": "Rows taken for columns",
@@ -29,6 +34,20 @@ CHAPTERS = {
         "sec-quickshot-slip": "A slip in print",
         "sec-base-and-tool": "Base and tool",
         "sec-quickshot-tables": "The same arm, other tables",
+    },
+    "PUMA 560: one arm, five tables": {
+        "sec-puma560-frames": "Six axes, six frames",
+        "sec-puma560-rows": "The table, row by row",
+        "sec-puma560-links": "Six link matrices",
+        "sec-puma560-product": "The product in two halves",
+        "sec-puma560-first-half": "The arm: sum of angles",
+        "sec-puma560-second-half": "The wrist",
+        "sec-puma560-entries": "All twelve entries",
+        "sec-puma560-reading": "Reading it",
+        "sec-puma560-poses": "Is it right?",
+        "sec-puma560-row-down": "The links move a row",
+        "sec-puma560-corke": "Corke's table: x1 reversed",
+        "sec-puma560-parity": "The rule",
     },
 }
 

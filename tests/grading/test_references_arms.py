@@ -1,0 +1,158 @@
+"""References of the exercises on whole arms, against poses that other programs computed, part by part."""
+
+import json
+from functools import reduce
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dhlib import Chain, Prismatic, Revolute
+from dhlib.grading.exercise import load_exercise
+from dhlib.grading.forms import Frames, Table
+from dhlib.grading.retelling import altered
+from dhlib.mechanism import same_mechanism
+
+ROOT = Path(__file__).parents[2]
+WITNESS = json.loads((ROOT / "tests" / "dhlib" / "fk_cases.json").read_text(encoding="utf-8"))["robots"]
+
+#: The witness of each exercise.
+ARMS = {"puma560": "puma560_craig_classic"}
+#: Parts, each with what it should be of the pose T of the last frame.
+WHOLE = {
+    "puma560": {
+        "T06": lambda T: T,
+        "T6": lambda T: T,
+        "T6_quarter": lambda T: T,
+        "p": lambda T: T[:3, 3],
+        "n_x": lambda T: T[0, 0],
+        "n_y": lambda T: T[1, 0],
+    },
+}
+#: Parts whose product should be T.
+PRODUCTS = {"puma560": [[f"A{i}" for i in range(1, 7)], ["T03", "T36"]]}
+#: A function of i and q, whose product over the links should be T.
+LINKS = {"puma560": "link"}
+#: Z and E of the page, by hand.
+h, r = np.sqrt(3) / 2, np.sqrt(0.5)
+ENDS = {
+    "puma560": (
+        [[0, -1, 0, 0.4], [1, 0, 0, -0.25], [0, 0, 1, 0.66], [0, 0, 0, 1]],
+        [[r, -r * h, -r / 2, 0], [r, r * h, r / 2, 0], [0, -0.5, h, 0.16], [0, 0, 0, 1]],
+    ),
+}
+
+
+@pytest.fixture(params=sorted(ARMS))
+def about(request):
+    """An exercise on a whole arm, and the poses of its witness."""
+    poses = [(np.array(case["q"]), np.array(case["T"])) for case in WITNESS[ARMS[request.param]]["cases"]]
+    return load_exercise(request.param, ROOT / "exercises"), poses
+
+
+def value(part, chain, *probe):
+    return np.asarray(part.asks.quantity(chain, *probe), dtype=float)
+
+
+def off_by(exercise, q, T, chain):
+    """How far every reference of an exercise is off, if its arm is this chain."""
+    name, part = exercise.name, exercise.part
+    for each, of in WHOLE[name].items():
+        yield each, np.abs(value(part(each), chain, q) - of(T)).max()
+    for names in PRODUCTS[name]:
+        yield "·".join(names), np.abs(reduce(np.matmul, [value(part(each), chain, q) for each in names]) - T).max()
+    if name in LINKS:
+        link = [value(part(LINKS[name]), chain, i, q) for i in range(1, chain.n + 1)]
+        yield LINKS[name], np.abs(reduce(np.matmul, link) - T).max()
+
+
+def bare(exercise):
+    """The arm of the products."""
+    return exercise.part(next(iter(WHOLE[exercise.name]))).chain
+
+
+def test_every_exercise_on_an_arm_of_the_witness_is_here():
+    assert set(ARMS) == set(WHOLE) == set(PRODUCTS)
+
+
+def test_references_agree_with_the_witness(about):
+    exercise, poses = about
+    for q, T in poses:
+        for each, off in off_by(exercise, q, T, bare(exercise)):
+            assert off < 1e-9, each
+
+
+def test_a_wrong_arm_would_be_seen(about):
+    """Negative control: with other twists every reference disagrees with the witness."""
+    exercise, poses = about
+    q, T = poses[-1]
+    wrong = dict(off_by(exercise, q, T, altered(bare(exercise), alpha=lambda joint: joint.alpha + 0.3)))
+    assert min(wrong.values()) > 1e-3, wrong
+
+
+def test_tables_are_the_mechanism_of_the_witness(about):
+    exercise, _ = about
+    rows = WITNESS[ARMS[exercise.name]]["dh"]
+    joints = [
+        Revolute(d=row["d"], a=row["a"], alpha=row["alpha"], offset=row["theta_offset"])
+        if row["joint"] == "R"
+        else Prismatic(theta=row["theta"], a=row["a"], alpha=row["alpha"], offset=row["d_offset"])
+        for row in rows
+    ]
+    witness = Chain(joints, WITNESS[ARMS[exercise.name]]["convention"])
+    parts = [part for part in exercise.parts if isinstance(part.asks, Table)]
+    assert {part.asks.convention for part in parts} == {"classic", "modified"}
+    for part in parts:
+        assert same_mechanism(part.chain, witness, free=())
+        longer = altered(part.chain, 2, d=lambda joint: joint.d + 0.01, a=lambda joint: joint.a + 0.01)
+        assert not same_mechanism(longer, witness, free=())
+
+
+def test_frames_end_where_the_witness_ends(about):
+    exercise, poses = about
+    at_zero = [T for q, T in poses if not q.any()]
+    parts = [part for part in exercise.parts if isinstance(part.asks, Frames)]
+    assert at_zero
+    assert parts
+    for part in parts:
+        assert part.asks.count == part.chain.n + 1
+        assert np.abs(part.chain.frames(np.zeros(part.chain.n))[-1] - at_zero[0]).max() < 1e-9
+
+
+def test_base_and_tool_by_hand(about):
+    """Z and E of the page, written down as numbers, around the poses of the witness."""
+    exercise, poses = about
+    if exercise.name not in ENDS:
+        pytest.skip("an arm without base and tool")
+    Z, E = map(np.array, ENDS[exercise.name])
+    part = exercise.part("X")
+    for q, T in poses:
+        assert np.abs(value(part, part.chain, q) - Z @ T @ E).max() < 1e-9
+    back = next(part for part in exercise.parts if part.id.endswith("_back"))
+    ((q,),) = back.asks.probes
+    assert np.abs(value(back, back.chain, q) - back.chain.T(0, back.chain.n, q)).max() < 1e-5
+
+
+def test_what_the_slides_print_of_the_puma():
+    """The slips are where the exercise says, and a column of length 1 is not enough."""
+    exercise = load_exercise("puma560", ROOT / "exercises")
+    q = np.array([0.3, -0.4, 0.5, 0.7, -0.6, 0.9])
+    n = bare(exercise).T(0, 6, q)[:3, 0]
+    x, y = (exercise.part(name).traps for name in ("n_x", "n_y"))
+    printed = [float(trap.quantity(exercise.arm, q)) for trap in (x[0], y[0])]
+    assert round(float(np.linalg.norm([*printed, n[2]])), 3) == 1.052
+    half_mended = [float(x[1].quantity(exercise.arm, q)), printed[1], n[2]]
+    assert np.isclose(np.linalg.norm(half_mended), 1)
+    assert np.abs(half_mended - n).max() > 0.1
+    (mirror, _) = exercise.part("A5").traps
+    assert np.isclose(np.linalg.det(np.array(mirror.quantity(exercise.arm, q))), -1)
+
+
+def test_the_page_of_the_puma_gives_the_pose_that_is_marked():
+    notebook = json.loads((ROOT / "solutions" / "puma560.ipynb").read_text(encoding="utf-8"))
+    names = {"np": np}
+    exec("".join(next(cell["source"] for cell in notebook["cells"] if cell["id"] == "measured")), names)
+    back = load_exercise("puma560", ROOT / "exercises").part("T6_back")
+    Z, E = map(np.array, ENDS["puma560"])
+    off = np.abs(np.linalg.inv(Z) @ names["X_measured"] @ np.linalg.inv(E) - back.asks.values(back.chain)[0])
+    assert off.max() < back.asks.tolerance / 5
