@@ -16,15 +16,31 @@ CHAPTERS = {
         "sec-trap-order": "The product in the wrong order",
     },
     "The classic convention": {
+        "sec-classic-dh1": "DH1 as a formula",
+        "sec-classic-dh2": "DH2 as a formula",
+        "sec-classic-check": "Both as a check",
         "sec-classic-parameters": "Four parameters, measured",
+        "sec-classic-measure": "The measurement",
         "sec-classic-product": "The four matrices and their product",
+        "sec-classic-orders": "The order of the four steps",
         "sec-classic-variable": "What is constant and what varies",
         "sec-classic-trap-sign": "The sign of the twist",
         "sec-classic-trap-order": "The twist too early",
         "sec-classic-trap-row": "Link and joint one row apart",
     },
+    "Placing frames": {
+        "sec-placing-parallel": "Parallel axes: the offset may go anywhere",
+        "sec-placing-sense": "The sense of z",
+        "sec-placing-last": "The last frame",
+        "sec-placing-physical": "What is physical and what is choice",
+    },
     "The modified convention": {
+        "sec-modified-check": "Both as a check",
+        "sec-modified-slip": "A wrong factor on the slides",
         "sec-modified-product": "The general link matrix",
+    },
+    "Both side by side": {
+        "sec-both-columns": "The columns move one row",
     },
     "Quickshot: a worked arm": {
         "sec-quickshot-frames": "Five frames",
@@ -48,6 +64,25 @@ CHAPTERS = {
         "sec-puma560-row-down": "The links move a row",
         "sec-puma560-corke": "Corke's table: x1 reversed",
         "sec-puma560-parity": "The rule",
+        "sec-puma560-tables": "Five tables, one arm?",
+        "sec-puma560-flip": "An x axis the other way round",
+        "sec-puma560-fgl": "Fu, Gonzalez and Lee: three x axes, an offset, a flange",
+        "sec-puma560-hand": "False friends: which signs may be changed",
+        "sec-puma560-trap-bracket": "Modified rows in the classic formula",
+    },
+    "Prismatic joints": {
+        "sec-prismatic-mirror": "The shoulder on the other side",
+        "sec-prismatic-trap-published": "Two published tables",
+    },
+    "Prismatic joints": {
+        "sec-prismatic-row": "A joint that slides",
+        "sec-prismatic-stanford": "The Stanford arm",
+        "sec-prismatic-stanford-check": "Reading its position",
+        "sec-prismatic-scara": "A SCARA: the Adept Cobra 600",
+        "sec-prismatic-direction": "Only the direction counts",
+        "sec-prismatic-wander": "Heights that wander",
+        "sec-prismatic-mirror": "The shoulder on the other side",
+        "sec-prismatic-trap-revolute": "The slide treated as a turn",
     },
 }
 

@@ -17,7 +17,10 @@ ROOT = Path(__file__).parents[2]
 WITNESS = json.loads((ROOT / "tests" / "dhlib" / "fk_cases.json").read_text(encoding="utf-8"))["robots"]
 
 #: The witness of each exercise.
-ARMS = {"puma560": "puma560_craig_classic"}
+ARMS = {
+    "puma560": "puma560_craig_classic",
+    "stanford": "stanford_classic",
+}
 #: Parts, each with what it should be of the pose T of the last frame.
 WHOLE = {
     "puma560": {
@@ -28,11 +31,19 @@ WHOLE = {
         "n_x": lambda T: T[0, 0],
         "n_y": lambda T: T[1, 0],
     },
+    "stanford": {
+        "T6": lambda T: T,
+        "T6_quarter": lambda T: T,
+        "wrist": lambda T: T[:3, 3] - 0.263 * T[:3, 2],
+    },
 }
 #: Parts whose product should be T.
-PRODUCTS = {"puma560": [[f"A{i}" for i in range(1, 7)], ["T03", "T36"]]}
+PRODUCTS = {
+    "puma560": [[f"A{i}" for i in range(1, 7)], ["T03", "T36"]],
+    "stanford": [],
+}
 #: A function of i and q, whose product over the links should be T.
-LINKS = {"puma560": "link"}
+LINKS = {"puma560": "link", "stanford": "link"}
 #: Z and E of the page, by hand.
 h, r = np.sqrt(3) / 2, np.sqrt(0.5)
 ENDS = {
@@ -43,11 +54,15 @@ ENDS = {
 }
 
 
+def with_witness(name):
+    """An exercise on a whole arm, and the poses of its witness."""
+    poses = [(np.array(case["q"]), np.array(case["T"])) for case in WITNESS[ARMS[name]]["cases"]]
+    return load_exercise(name, ROOT / "exercises"), poses
+
+
 @pytest.fixture(params=sorted(ARMS))
 def about(request):
-    """An exercise on a whole arm, and the poses of its witness."""
-    poses = [(np.array(case["q"]), np.array(case["T"])) for case in WITNESS[ARMS[request.param]]["cases"]]
-    return load_exercise(request.param, ROOT / "exercises"), poses
+    return with_witness(request.param)
 
 
 def value(part, chain, *probe):
@@ -56,14 +71,18 @@ def value(part, chain, *probe):
 
 def off_by(exercise, q, T, chain):
     """How far every reference of an exercise is off, if its arm is this chain."""
-    name, part = exercise.name, exercise.part
-    for each, of in WHOLE[name].items():
-        yield each, np.abs(value(part(each), chain, q) - of(T)).max()
-    for names in PRODUCTS[name]:
-        yield "·".join(names), np.abs(reduce(np.matmul, [value(part(each), chain, q) for each in names]) - T).max()
-    if name in LINKS:
-        link = [value(part(LINKS[name]), chain, i, q) for i in range(1, chain.n + 1)]
-        yield LINKS[name], np.abs(reduce(np.matmul, link) - T).max()
+
+    def told(part_id, *probe):
+        part = exercise.part(part_id)
+        own = chain.to_modified() if part.chain.convention == "modified" else chain.to_classic()
+        return value(part, own, *probe)
+
+    for each, of in WHOLE[exercise.name].items():
+        yield each, np.abs(told(each, q) - of(T)).max()
+    for names in PRODUCTS[exercise.name]:
+        yield "·".join(names), np.abs(reduce(np.matmul, [told(each, q) for each in names]) - T).max()
+    link = LINKS[exercise.name]
+    yield link, np.abs(reduce(np.matmul, [told(link, i, q) for i in range(1, chain.n + 1)]) - T).max()
 
 
 def bare(exercise):
@@ -72,7 +91,7 @@ def bare(exercise):
 
 
 def test_every_exercise_on_an_arm_of_the_witness_is_here():
-    assert set(ARMS) == set(WHOLE) == set(PRODUCTS)
+    assert set(ARMS) == set(WHOLE) == set(PRODUCTS) == set(LINKS)
 
 
 def test_references_agree_with_the_witness(about):
@@ -110,25 +129,23 @@ def test_tables_are_the_mechanism_of_the_witness(about):
 
 def test_frames_end_where_the_witness_ends(about):
     exercise, poses = about
-    at_zero = [T for q, T in poses if not q.any()]
     parts = [part for part in exercise.parts if isinstance(part.asks, Frames)]
-    assert at_zero
     assert parts
     for part in parts:
         assert part.asks.count == part.chain.n + 1
-        assert np.abs(part.chain.frames(np.zeros(part.chain.n))[-1] - at_zero[0]).max() < 1e-9
+        for q, T in poses:
+            assert np.abs(part.chain.frames(q)[-1] - T).max() < 1e-9
 
 
-def test_base_and_tool_by_hand(about):
+@pytest.mark.parametrize("name", sorted(ENDS))
+def test_base_and_tool_by_hand(name):
     """Z and E of the page, written down as numbers, around the poses of the witness."""
-    exercise, poses = about
-    if exercise.name not in ENDS:
-        pytest.skip("an arm without base and tool")
-    Z, E = map(np.array, ENDS[exercise.name])
+    exercise, poses = with_witness(name)
+    Z, E = map(np.array, ENDS[name])
     part = exercise.part("X")
     for q, T in poses:
         assert np.abs(value(part, part.chain, q) - Z @ T @ E).max() < 1e-9
-    back = next(part for part in exercise.parts if part.id.endswith("_back"))
+    back = exercise.parts[-1]
     ((q,),) = back.asks.probes
     assert np.abs(value(back, back.chain, q) - back.chain.T(0, back.chain.n, q)).max() < 1e-5
 
@@ -148,11 +165,26 @@ def test_what_the_slides_print_of_the_puma():
     assert np.isclose(np.linalg.det(np.array(mirror.quantity(exercise.arm, q))), -1)
 
 
-def test_the_page_of_the_puma_gives_the_pose_that_is_marked():
-    notebook = json.loads((ROOT / "solutions" / "puma560.ipynb").read_text(encoding="utf-8"))
+@pytest.mark.parametrize("name", sorted(ENDS))
+def test_the_page_gives_the_pose_that_is_marked(name):
+    notebook = json.loads((ROOT / "solutions" / f"{name}.ipynb").read_text(encoding="utf-8"))
     names = {"np": np}
     exec("".join(next(cell["source"] for cell in notebook["cells"] if cell["id"] == "measured")), names)
-    back = load_exercise("puma560", ROOT / "exercises").part("T6_back")
-    Z, E = map(np.array, ENDS["puma560"])
+    back = load_exercise(name, ROOT / "exercises").parts[-1]
+    Z, E = map(np.array, ENDS[name])
     off = np.abs(np.linalg.inv(Z) @ names["X_measured"] @ np.linalg.inv(E) - back.asks.values(back.chain)[0])
     assert off.max() < back.asks.tolerance / 5
+
+
+def test_the_boom_of_the_stanford_arm():
+    """The parts that end before the hand, by the links that multiply to the witness, and by school geometry."""
+    exercise, poses = with_witness("stanford")
+    part = exercise.part
+    for q, _ in poses:
+        link = [value(part("link"), part("link").chain, i, q) for i in (1, 2, 3)]
+        assert np.abs(value(part("T03"), part("T03").chain, q) - reduce(np.matmul, link)).max() < 1e-9
+        assert np.abs(value(part("A3"), part("A3").chain, q) - link[2]).max() < 1e-12
+        about_x = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+        assert np.abs(value(part("A3_modified"), part("A3_modified").chain, q) - about_x @ link[2]).max() < 1e-12
+        boom = [np.cos(q[0]) * np.sin(q[1]), np.sin(q[0]) * np.sin(q[1]), np.cos(q[1])]
+        assert np.abs(value(part("push"), part("push").chain, q) - 0.1 * np.array(boom)).max() < 1e-9
