@@ -33,6 +33,9 @@ def atomic(name, step, symbol, others):
     if symbol in ("theta", "alpha"):
         says = "The sines have each other's sign: for a small positive angle, where does the tip of each axis go?"
         traps.append(Trap(says, lambda arm, q: step(q[0]).T, "transpose"))
+    else:
+        says = "It slides backwards: a positive length goes along the axis."
+        traps.append(Trap(says, lambda arm, q: step(-q[0]), "transpose"))
     asks = Formula(lambda arm, q: step(q[0]), symbols=[symbol])
     return Part(f"{name}_sym", f"{name} in symbols", 1, asks, section="sec-atomic", traps=traps)
 

@@ -2,10 +2,12 @@
 
 import json
 from functools import reduce
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from dhlib.grading.exercise import load_exercise
 
@@ -80,3 +82,68 @@ def test_the_page_of_the_transforms_by_hand():
         assert np.abs(part_of("transforms", part)(()) - value).max() < 1e-9, part
     hand, cube = np.linalg.inv(by_hand["hand_back"]), part_of("transforms", "cube_in_hand")(())
     assert np.allclose((hand @ cube)[:3, 3], [450, -50, 50])
+
+
+def test_links_multiply_to_every_arm_of_the_witness():
+    A, B = (part_of("one_link", f"{name}_sym") for name in "AB")
+    by_classic, by_modified = (part_of("one_link", f"{name}_link") for name in ("classic", "modified"))
+    assert furthest(by_classic, "classic") < 1e-9
+    assert furthest(lambda *row: A(row), "classic") < 1e-9
+    assert furthest(lambda t, d, a, alpha: by_modified(alpha, a, t, d), "modified") < 1e-9
+    assert furthest(lambda t, d, a, alpha: B((alpha, a, t, d)), "modified") < 1e-9
+
+
+def test_a_link_of_the_other_convention_would_be_seen():
+    """Negative control."""
+    by_classic, by_modified = (part_of("one_link", f"{name}_link") for name in ("classic", "modified"))
+    assert furthest(by_classic, "modified") > 0.1
+    assert furthest(lambda t, d, a, alpha: by_modified(alpha, a, t, d), "classic") > 0.1
+
+
+def test_the_mended_origin_is_that_of_the_modified_link():
+    origin, by_modified = part_of("one_link", "origin"), part_of("one_link", "modified_link")
+    row = (0.3, -0.8, 1.1, 0.6)
+    assert np.allclose(origin(row), [-0.8, -0.6 * np.sin(0.3), 0.6 * np.cos(0.3)])
+    assert np.allclose(origin(row), by_modified(*row)[:3, 3])
+
+
+def test_the_orders_are_the_five_of_the_book():
+    five = {"Rz Tz Tx Rx", "Rz Tz Rx Tx", "Rz Tx Tz Rx", "Tz Rz Tx Rx", "Tz Rz Rx Tx"}
+    orders = [" ".join(order) for order in permutations(["Rz", "Tz", "Tx", "Rx"])]
+    assert [float(order in five) for order in orders] == part_of("one_link", "obeys")(()).tolist()
+
+
+def test_the_page_of_one_link_shows_what_is_marked():
+    """The matrices that the page prints, rounded, are those that the answers come from."""
+    notebook = json.loads((ROOT / "solutions" / "one_link.ipynb").read_text(encoding="utf-8"))
+    shown = {"np": np}
+    for cell in notebook["cells"]:
+        if cell["id"] in ("given-link", "given-frames"):
+            exec("".join(cell["source"]), shown)  # our own notebook
+    theta, alpha = part_of("one_link", "angles")(())
+    d, a = part_of("one_link", "lengths")(())
+    by_classic = part_of("one_link", "classic_link")
+    assert np.abs(by_classic(theta, d, a, alpha) - shown["A"]).max() < 6e-5
+    tilted, pushed = shown["F3"], shown["F2"]
+    assert abs(np.rad2deg(np.arcsin(tilted[2, 0])) - part_of("one_link", "tilt")(())) < 0.005
+    miss = abs(pushed[1, 0] * pushed[0, 3] - pushed[0, 0] * pushed[1, 3])
+    assert abs(miss - part_of("one_link", "miss")(())) < 0.01
+    holds = {
+        str(k): (abs(F[2, 0]) < 1e-3, abs(F[1, 0] * F[0, 3] - F[0, 0] * F[1, 3]) < 0.1)
+        for k, F in shown.items()
+        if k[0] == "F"
+    }
+    assert holds == {"F1": (True, True), "F2": (True, False), "F3": (False, True), "F4": (False, False)}
+
+
+def test_the_orders_are_counted_in_symbols():
+    """Eight different matrices, by algebra and without dhlib."""
+    t, d, a, al = sp.symbols("t d a al", real=True)
+    turn_z = sp.Matrix([[sp.cos(t), -sp.sin(t), 0, 0], [sp.sin(t), sp.cos(t), 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    turn_x = sp.Matrix([[1, 0, 0, 0], [0, sp.cos(al), -sp.sin(al), 0], [0, sp.sin(al), sp.cos(al), 0], [0, 0, 0, 1]])
+    slide_z, slide_x = (sp.eye(4).copy() for _ in range(2))
+    slide_z[2, 3], slide_x[0, 3] = d, a
+    made = {
+        sp.ImmutableMatrix((A * B * C * D).expand()) for A, B, C, D in permutations([turn_z, slide_z, slide_x, turn_x])
+    }
+    assert len(made) == part_of("one_link", "products")(())

@@ -1,0 +1,328 @@
+"""What the exercise on one link asks, and how it is marked."""
+
+from functools import reduce
+from itertools import permutations
+
+import numpy as np
+
+from dhlib import Chain, Revolute, Rx, Ry, Rz, Tx, Ty, Tz, classic, modified
+from dhlib.grading.exercise import Exercise, Part, Trap
+from dhlib.grading.forms import Choice, Formula, Function, Numbers
+from dhlib.grading.misconceptions import retold
+
+CLASSIC, MODIFIED = ("theta", "d", "a", "alpha"), ("alpha", "a", "theta", "d")
+CALLS = [tuple(map(float, row)) for row in np.random.default_rng(5).uniform(-2.5, 2.5, (8, 4))]
+
+#: The link whose parameters are to be read off its matrix.
+LINK = {"theta": np.deg2rad(-130), "d": 85.0, "a": 140.0, "alpha": np.deg2rad(55)}
+#: Frames {1} as seen from {0}: what each obeys is asked.
+FRAMES = {
+    1: Rz(0.6) @ Tz(70) @ Tx(120) @ Rx(-0.8),
+    2: Rz(0.6) @ Ty(35) @ Tz(70) @ Tx(120) @ Rx(-0.8),
+    3: Rz(0.6) @ Tz(70) @ Ry(-0.3) @ Tx(120) @ Rx(-0.8),
+    4: Rx(-0.8) @ Tx(120) @ Rz(0.6) @ Tz(70),
+}
+
+
+def link(convention, names):
+    """The arm of one link, from parameters in the order of `names`."""
+
+    def chain_at(*parameters):
+        row = dict(zip(names, parameters, strict=True))
+        return Chain([Revolute(d=row["d"], a=row["a"], alpha=row["alpha"])], convention, unit="mm")
+
+    return chain_at
+
+
+def matrix(names, rows=slice(4), columns=slice(4)):
+    """The link matrix, or a part of it, of such an arm."""
+    return lambda arm, *parameters: arm.A(1, [dict(zip(names, parameters, strict=True))["theta"]])[rows, columns]
+
+
+def formula(part, title, points, convention, names, section, shape=(4, 4), traps=(), **entries):
+    """An entry, a column or the whole of the link matrix in symbols."""
+    make, take = link(convention, names), matrix(names, **entries)
+    asks = Formula(lambda arm, q: take(make(*q), *q), shape=shape, symbols=names)
+    told = retold(lambda q: make(*q), lambda arm, q: take(arm, *q), ((0.3, 0.4, 0.5, 0.6),))
+    return Part(part, title, points, asks, section=section, traps=[*traps, *told])
+
+
+def function(part, title, points, convention, names, section):
+    """The link matrix as a function."""
+    make, take = link(convention, names), matrix(names)
+    asks = Function(lambda arm, *p: take(make(*p), *p), calls=CALLS, signature=f"{part}({', '.join(names)})")
+    return Part(part, title, points, asks, section=section, traps=retold(make, take, CALLS[0]))
+
+
+def measured(part, title, names, tolerance, traps):
+    """Two parameters of LINK, read off its matrix."""
+    asks = Numbers(lambda arm, _: [LINK[name] for name in names], shape=(2,), at=(), tolerance=tolerance)
+    return Part(part, title, 2, asks, section="sec-classic-measure", traps=traps)
+
+
+def number(part, title, points, right, section, traps, tolerance=1e-3):
+    """One number, with the wrong ones that a slip leads to."""
+    traps = [Trap(says, lambda arm, _, wrong=wrong: wrong) for wrong, says in traps]
+    asks = Numbers(lambda arm, _: right, shape=(), at=(), tolerance=tolerance)
+    return Part(part, title, points, asks, section=section, traps=traps)
+
+
+def conditions(part, title, right, because, section="sec-classic-check"):
+    """Which of DH1 and DH2 two frames obey."""
+    fails = {"both hold": (), "DH1 fails": ("DH1",), "DH2 fails": ("DH2",), "both fail": ("DH1", "DH2")}
+    options = {}
+    for option, blamed in fails.items():
+        unjust = [condition for condition in blamed if condition not in fails[right]]
+        options[option] = (
+            f"{unjust[0]} holds here: test it again." if unjust else "not all that fails is named: test both."
+        )
+    return Part(part, title, 1, Choice(options | {right: because}, right), section=section)
+
+
+# The 24 orders
+
+STEPS = {"Rz": Rz, "Tz": Tz, "Tx": Tx, "Rx": Rx}
+ORDERS = list(permutations(STEPS))
+VALUES = {"Rz": 0.7, "Tz": 1.3, "Tx": 1.9, "Rx": -0.4}
+
+
+def product(order):
+    return reduce(np.matmul, (STEPS[step](VALUES[step]) for step in order))
+
+
+def dh1(A):
+    return abs(A[2, 0]) < 1e-9
+
+
+def dh2(A):
+    return abs(A[1, 0] * A[0, 3] - A[0, 0] * A[1, 3]) < 1e-9
+
+
+def ones(holds):
+    return np.array([float(holds(product(order))) for order in ORDERS])
+
+
+def both(A):
+    return dh1(A) and dh2(A)
+
+
+def quantity(value):
+    return lambda arm, _: value
+
+
+def modified_both(A):
+    return abs(A[0, 2]) < 1e-9 and abs(A[1, 2] * A[2, 3] - A[2, 2] * A[1, 3]) < 1e-9
+
+
+EXERCISE = Exercise(
+    name="one_link",
+    title="One link",
+    arm=link("classic", CLASSIC)(*LINK.values()),
+    parts=[
+        formula("A_sym", "The classic link matrix", 2, "classic", CLASSIC, "sec-classic-product"),
+        function("classic_link", "The same as a function", 2, "classic", CLASSIC, "sec-classic-product"),
+        formula("B_sym", "The modified link matrix", 2, "modified", MODIFIED, "sec-modified-product"),
+        function("modified_link", "The same as a function", 2, "modified", MODIFIED, "sec-modified-product"),
+        Part(
+            "factor",
+            "A wrong factor",
+            1,
+            Choice(
+                {
+                    "first": "Rx(α) is right: the modified link begins with the twist about x of the frame before.",
+                    "second": "Tx(a) is right: the link length goes along the same x as the twist.",
+                    "third": "Rz(θ) is right: the joint turns about the new z.",
+                    "fourth": "the offset d goes along z, the axis that the joint turns about: the factor is Tz(d).",
+                },
+                right="fourth",
+            ),
+            section="sec-modified-slip",
+        ),
+        formula(
+            "origin",
+            "The position, mended",
+            1,
+            "modified",
+            MODIFIED,
+            "sec-modified-slip",
+            shape=(3,),
+            rows=slice(3),
+            columns=3,
+            traps=[
+                Trap(
+                    "This is the position of the printed product, with d along x.",
+                    lambda arm, q: modified(q[0], q[1], q[2], 0)[:3, :3] @ [q[3], 0, 0] + [q[1], 0, 0],
+                ),
+                Trap(
+                    "This is the position of the classic convention, a cos θ, a sin θ, d.",
+                    lambda arm, q: classic(q[2], q[3], q[1], q[0])[:3, 3],
+                    "convention",
+                ),
+            ],
+        ),
+        measured(
+            "angles",
+            "Two angles, read off",
+            ("theta", "alpha"),
+            2e-3,
+            [
+                Trap(
+                    "These are degrees; radians are asked for.",
+                    quantity(np.rad2deg([LINK["theta"], LINK["alpha"]])),
+                    "degrees",
+                ),
+                Trap("The two angles are exchanged: θ first, then α.", quantity([LINK["alpha"], LINK["theta"]])),
+                Trap(
+                    "θ lies in the wrong quadrant: arctan of a quotient cannot tell, arctan2(sine, cosine) can.",
+                    quantity([LINK["theta"] + np.pi, LINK["alpha"]]),
+                ),
+                Trap(
+                    "A cosine alone does not tell the sign of an angle: take its sine too, with arctan2.",
+                    quantity([-LINK["theta"], LINK["alpha"]]),
+                ),
+                Trap(
+                    "A sine alone does not tell an angle: take the cosine too, with arctan2.",
+                    quantity([-np.pi - LINK["theta"], LINK["alpha"]]),
+                ),
+                Trap(
+                    "α has the wrong sign: its sine stands in row 3.", quantity([LINK["theta"], -LINK["alpha"]]), "sign"
+                ),
+                Trap("Both angles have the wrong sign.", quantity([-LINK["theta"], -LINK["alpha"]])),
+            ],
+        ),
+        measured(
+            "lengths",
+            "Two lengths, read off",
+            ("d", "a"),
+            0.1,
+            [
+                Trap(
+                    "The two lengths are exchanged: d goes along z, a along x.",
+                    quantity([LINK["a"], LINK["d"]]),
+                    "a_and_d",
+                ),
+                Trap(
+                    "a has the wrong sign: the position is (a cos θ, a sin θ, d), with the θ of the rotation.",
+                    quantity([LINK["d"], -LINK["a"]]),
+                    "sign",
+                ),
+                Trap(
+                    "This a is the x coordinate of the origin; a is measured along the new x.",
+                    quantity([LINK["d"], LINK["a"] * np.cos(LINK["theta"])]),
+                ),
+                Trap(
+                    "This a is the y coordinate of the origin; a is measured along the new x.",
+                    quantity([LINK["d"], LINK["a"] * np.sin(LINK["theta"])]),
+                ),
+                Trap(
+                    "This a is the distance of the origins; the part of it along z is d.",
+                    quantity([LINK["d"], np.hypot(LINK["a"], LINK["d"])]),
+                ),
+            ],
+        ),
+        conditions("pair_1", "Frames, first pair", "both hold", "the line of x1 meets z0 at a right angle."),
+        conditions(
+            "pair_2", "Frames, second pair", "DH2 fails", "the line of x1 is level, but it passes z0 at a distance."
+        ),
+        conditions("pair_3", "Frames, third pair", "DH1 fails", "the line of x1 meets z0, but at a slant."),
+        conditions(
+            "pair_4", "Frames, fourth pair", "both fail", "the line of x1 is slanted, and it passes z0 at a distance."
+        ),
+        conditions(
+            "pair_4_modified",
+            "The fourth pair once more",
+            "both hold",
+            "the line of x0 meets z1 at a right angle: these are modified frames.",
+            section="sec-modified-check",
+        ),
+        number(
+            "tilt",
+            "By how much DH1 fails",
+            1,
+            np.rad2deg(0.3),
+            "sec-classic-dh1",
+            [
+                (0.3, "This is in radians; degrees are asked for."),
+                (np.sin(0.3), "This is the entry r31, the sine of the angle; asked for is the angle, in degrees."),
+                (90 + np.rad2deg(0.3), "This is the angle between x1 and z0; asked for is by how much it is off 90°."),
+                (90 - np.rad2deg(0.3), "This is the angle between x1 and z0; asked for is by how much it is off 90°."),
+            ],
+            tolerance=0.05,
+        ),
+        number(
+            "miss",
+            "By how much DH2 fails",
+            1,
+            35.0,
+            "sec-classic-dh2",
+            [
+                (np.hypot(35, 120), "This is how far the origin of {1} is from z0; x1 as a line comes closer to it."),
+                (
+                    float(np.linalg.norm(FRAMES[2][:3, 3])),
+                    "This is the distance of the origins; asked for is that of the lines.",
+                ),
+                (70.0, "This is the height of the origin; asked for is the distance of the lines of x1 and z0."),
+                (
+                    120.0,
+                    "This is how far the origin is from the normal, along x1; asked for is the normal itself.",
+                ),
+            ],
+            tolerance=0.1,
+        ),
+        Part(
+            "obeys",
+            "Which of the 24 orders",
+            3,
+            Numbers(quantity(ones(both)), shape=(24,), at=()),
+            section="sec-classic-orders",
+            traps=[
+                Trap("Here DH1 alone is tested; DH2 has to hold too.", quantity(ones(dh1))),
+                Trap("Here DH2 alone is tested; DH1 has to hold too.", quantity(ones(dh2))),
+                Trap("One condition is enough here; both have to hold.", quantity(ones(lambda A: dh1(A) or dh2(A)))),
+                Trap("Here 1 and 0 are exchanged: 1 stands for an order that obeys both.", quantity(1 - ones(both))),
+                Trap(
+                    "These are the orders that obey the conditions of the modified convention.",
+                    quantity(ones(modified_both)),
+                    "convention",
+                ),
+                Trap(
+                    "Only one order is found, and some steps may change places without changing the product.",
+                    quantity(np.array([float(order == ("Rz", "Tz", "Tx", "Rx")) for order in ORDERS])),
+                ),
+                Trap(
+                    "One order is missing: Tx and Tz may change places too, where no turn stands between them.",
+                    quantity(np.array([float({*order[:2]} == {"Rz", "Tz"}) for order in ORDERS])),
+                ),
+            ],
+        ),
+        number(
+            "products",
+            "How many matrices",
+            1,
+            8,
+            "sec-classic-orders",
+            [
+                (24, "That is how many orders there are: many of them give the same matrix."),
+                (5, "That is how many orders give the classic link matrix; now count different matrices."),
+                (20, "Only the classic five are counted as one here: other orders have equal products too."),
+                (12, "Neighbours about one axis may change places, and so may Tx and Tz when they are neighbours."),
+                (2, "There are more than the two conventions: compare all products at random values."),
+            ],
+        ),
+        Part(
+            "exception",
+            "Twist before turn",
+            1,
+            Choice(
+                {
+                    "Tz Rx Rz Tx": "its line of x1 still meets z0, though at a slant: DH2 alone is no comfort.",
+                    "Rx Tz Rz Tx": "here x1 passes z0 at a distance: the offset goes along the twisted z.",
+                    "Tz Tx Rx Rz": "here x1 passes z0 at a distance: the way a goes along the old x.",
+                    "Rx Tx Rz Tz": "this is the modified order; its x1 and z0 pass at a distance.",
+                },
+                right="Tz Rx Rz Tx",
+            ),
+            section="sec-classic-orders",
+        ),
+    ],
+)
