@@ -20,6 +20,7 @@ WITNESS = json.loads((ROOT / "tests" / "dhlib" / "fk_cases.json").read_text(enco
 ARMS = {
     "puma560": "puma560_craig_classic",
     "stanford": "stanford_classic",
+    "scara": "scara_cobra600_classic",
 }
 #: Parts, each with what it should be of the pose T of the last frame.
 WHOLE = {
@@ -36,20 +37,26 @@ WHOLE = {
         "T6_quarter": lambda T: T,
         "wrist": lambda T: T[:3, 3] - 0.263 * T[:3, 2],
     },
+    "scara": {"T04": lambda T: T, "T4": lambda T: T, "T4_quarter": lambda T: T},
 }
 #: Parts whose product should be T.
 PRODUCTS = {
     "puma560": [[f"A{i}" for i in range(1, 7)], ["T03", "T36"]],
     "stanford": [],
+    "scara": [],
 }
 #: A function of i and q, whose product over the links should be T.
-LINKS = {"puma560": "link", "stanford": "link"}
+LINKS = {"puma560": "link", "stanford": "link", "scara": "link"}
 #: Z and E of the page, by hand.
 h, r = np.sqrt(3) / 2, np.sqrt(0.5)
 ENDS = {
     "puma560": (
         [[0, -1, 0, 0.4], [1, 0, 0, -0.25], [0, 0, 1, 0.66], [0, 0, 0, 1]],
         [[r, -r * h, -r / 2, 0], [r, r * h, r / 2, 0], [0, -0.5, h, 0.16], [0, 0, 0, 1]],
+    ),
+    "scara": (
+        [[0, -1, 0, 0.8], [1, 0, 0, 0.3], [0, 0, 1, 0.5], [0, 0, 0, 1]],
+        [[1, 0, 0, 0.04], [0, h, -0.5, 0], [0, 0.5, h, 0.12], [0, 0, 0, 1]],
     ),
 }
 
@@ -188,3 +195,24 @@ def test_the_boom_of_the_stanford_arm():
         assert np.abs(value(part("A3_modified"), part("A3_modified").chain, q) - about_x @ link[2]).max() < 1e-12
         boom = [np.cos(q[0]) * np.sin(q[1]), np.sin(q[0]) * np.sin(q[1]), np.cos(q[1])]
         assert np.abs(value(part("push"), part("push").chain, q) - 0.1 * np.array(boom)).max() < 1e-9
+
+
+def test_two_links_and_the_heading_of_the_scara():
+    exercise, poses = with_witness("scara")
+    part = exercise.part
+    for q, T in poses:
+        c, s = np.cos(q[1]), np.sin(q[1])
+        over = [[c, s, 0, 0.275 * c], [s, -c, 0, 0.275 * s], [0, 0, -1, 0], [0, 0, 0, 1]]
+        assert np.abs(value(part("A2"), part("A2").chain, q) - over).max() < 1e-12
+        slide = [[1, 0, 0, 0.275], [0, -1, 0, 0], [0, 0, -1, -q[2]], [0, 0, 0, 1]]
+        assert np.abs(value(part("A3_modified"), part("A3_modified").chain, q) - slide).max() < 1e-12
+        assert np.isclose(value(part("heading"), part("heading").chain, q), np.arctan2(T[1, 0], T[0, 0]))
+
+
+def test_the_scara_that_went_wrong_does_what_its_page_says():
+    joints = list(bare(load_exercise("scara", ROOT / "exercises")).joints)
+    joints[2] = Revolute()
+    for q3 in (0.1, 0.2):
+        T = Chain(joints, "classic").fk([0, 0, q3, 0])
+        assert np.allclose(T[:3, 3], [0.6, 0, 0.387])
+        assert np.isclose(np.arctan2(T[1, 0], T[0, 0]), -q3)
