@@ -22,7 +22,7 @@ from docutils import nodes
 from formulas import ROOT, node_program, set_formula
 from myst_nb.core.variables import RetrievalError
 from myst_nb.ext.glue.utils import retrieve_glue_data
-from sealing import seal
+from sealing import Keys, seal
 from sphinx.errors import ExtensionError
 from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
@@ -128,7 +128,8 @@ def depart_question(translator: HTML5Translator, node: QuestionNode) -> None:
     question = node["question"]
     page = translator.builder.current_docname
     answers = [answer | {"says": feedback(translator, answer["says"], node)} for answer in question["answers"]]
-    sealed = seal(question | {"answers": answers}, f"{page} {node['name']}")
+    keys: Keys = translator.builder.app.keys  # type: ignore[attr-defined]
+    sealed = seal(question | {"answers": answers}, f"{page} {node['name']}", keys)
     translator.body.append(entries(translator, question, node) if question["kind"] == "number" else "")
     # Formulas within what is sealed need their glyphs: the page is told which, together with all that it uses.
     glyphs = " ".join(sorted(set(re.findall(r'href="#glyph-[^"]+"', "".join(answer["says"] for answer in answers)))))
@@ -209,8 +210,9 @@ def keep_answer(translator: HTML5Translator, page: str, node: QuestionNode, says
 
 
 def begin(app: Sphinx) -> None:
-    """Know no answers yet."""
+    """Know no answers yet, and the keys of earlier builds."""
     app.answers = {}  # type: ignore[attr-defined]
+    app.keys = Keys(ROOT / "_build" / ".keys.json")  # type: ignore[attr-defined]
 
 
 def add_script(
@@ -222,7 +224,8 @@ def add_script(
 
 
 def finish(app: Sphinx, exception: Exception | None) -> None:
-    """Bundle the script into the site, and keep the answers beside it."""
+    """Bundle the script into the site, and keep the answers and keys beside it."""
+    app.keys.save()  # type: ignore[attr-defined]
     if exception is not None or app.builder.format != "html":
         return
     if any(of_page.get("has_questions") for of_page in app.env.metadata.values()):
