@@ -6,6 +6,7 @@ nothing of the solution, and, for the forms that are judged by value, the values
 
 from __future__ import annotations
 
+import warnings
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
+from dhlib.errors import DHWarning
 from dhlib.scalars import FloatArray
 
 Request = dict[str, Any]
@@ -62,12 +64,16 @@ class Valued:
         How far a pure number may be off, as the task states it.
     length_tolerance : float
         How far a length may be off, in the arm's unit: in a pose that is the upper part of its last column.
+    means : callable, optional
+        What one value stands for, where different values stand for the same: of joint values, the pose that they
+        lead to. What is meant is then compared, to `tolerance`.
     """
 
     quantity: Quantity
     shape: tuple[int, ...] = (4, 4)
     tolerance: float = 1e-6
     length_tolerance: float = 1e-3
+    means: Callable[[FloatArray], FloatArray] | None = None
 
     kind: ClassVar[str] = ""
 
@@ -80,9 +86,19 @@ class Valued:
         """The quantity at every probe, (probes, *shape)."""
         return np.array([np.asarray(self.quantity(arm, *probe), dtype=float) for probe in self.probes])
 
+    def meaning(self, values: FloatArray) -> FloatArray:
+        """What values (probes, *shape) stand for."""
+        if self.means is None:
+            return values
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DHWarning)  # these are another's joint values, and may be in degrees
+            return np.array([self.means(value) for value in values])
+
     @property
     def tolerances(self) -> FloatArray:
-        """The tolerance of each entry, of this form's shape."""
+        """The tolerance of each entry that is compared."""
+        if self.means is not None:
+            return np.array(self.tolerance)
         tolerances = np.full(self.shape, self.tolerance)
         if self.shape == (4, 4):
             tolerances[:3, 3] = self.length_tolerance

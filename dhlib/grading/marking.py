@@ -228,7 +228,7 @@ def _plain(text: str) -> str:
 
 
 def _judge_values(part: Part, asks: Valued, values: FloatArray, earlier: Mapping[str, Earlier]) -> Mark:
-    right = asks.values(part.chain)
+    values, right = asks.meaning(values), asks.meaning(asks.values(part.chain))
     if agree(values, right, asks.tolerances):
         return make_mark(part, RIGHT)
     if follows := _follows(part, asks, values, earlier):
@@ -257,6 +257,7 @@ def agree(values: FloatArray, right: FloatArray, tolerances: FloatArray) -> bool
 
 
 def _explains(told: FloatArray, values: FloatArray, right: FloatArray, asks: Valued) -> bool:
+    told = asks.meaning(told)
     return agree(values, told, asks.tolerances) and not agree(told, right, asks.tolerances)
 
 
@@ -271,7 +272,8 @@ def _follows(part: Part, asks: Valued, values: FloatArray, earlier: Mapping[str,
     explained = all(mark.misconception for mark in wrong)
     if len(arrays) < len(starts) or (2 * len(wrong) > len(starts) and not explained):
         return None
-    if not agree(values, np.array([rule.rule(*at_probe) for at_probe in zip(*arrays, strict=True)]), asks.tolerances):
+    followed = asks.meaning(np.array([rule.rule(*at_probe) for at_probe in zip(*arrays, strict=True)]))
+    if not agree(values, followed, asks.tolerances):
         return None
     names = [start.mark.part for start in starts if start.mark.verdict != RIGHT]
     return make_mark(part, FOLLOWS, f"It follows from your {listed(names)}, not right yet: mend that, and then this.")

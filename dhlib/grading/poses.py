@@ -52,6 +52,8 @@ def describe(asks: Valued, values: FloatArray, right: FloatArray, unit: str) -> 
     where = ""
     if len(values) > 1 and (fine := int(np.sum(~off.reshape(len(values), -1).any(axis=1)))) > 0:
         where = f" At {fine} of {len(values)} sets of joint angles tried it is right, at the others it is not."
+    if asks.means is not None:
+        return f"These values do not lead where they should.{where}"
     if asks.shape == (4, 4):
         return _describe_pose(values, right, off, unit) + where
     if asks.shape == ():

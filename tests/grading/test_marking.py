@@ -11,8 +11,8 @@ import sympy as sp
 from dhlib import Chain, Revolute, Rz, robots
 from dhlib.errors import DHError
 from dhlib.grading.answers import read_answer
-from dhlib.grading.exercise import Exercise, Follows, Part, load_exercise
-from dhlib.grading.forms import Choice, Numbers, Valued
+from dhlib.grading.exercise import Exercise, Follows, Part, Trap, load_exercise
+from dhlib.grading.forms import Choice, Function, Numbers, Valued
 from dhlib.grading.marking import Marker, mark
 
 pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass:PendingDeprecationWarning")
@@ -290,3 +290,20 @@ def test_requests_hold_nothing_of_the_solution(every):
         request = part.asks.request()
         assert set(request) <= {"form", "shape", "symbols", "points", "calls", "convention", "options"}
         assert json.loads(json.dumps(request)) == request
+
+
+def test_what_stands_for_the_same_is_as_right():
+    """Joint values are compared by the pose that they lead to, and wrong ones are named by it, too."""
+    arm = Chain([Revolute(a=0.5), Revolute(a=0.3)], "classic")
+    asks = Function(
+        lambda arm, x, y: [x, y], shape=(2,), calls=[(0.4, 1.1), (-2.0, 0.7)], signature="f(x, y)", means=arm.fk
+    )
+    part = Part("f", "f", 1, asks, arm=arm, traps=[Trap("Joint 2 turns the wrong way.", lambda arm, x, y: [x, -y])])
+
+    def judged(f):
+        return mark(part, read_answer(asks.request(), f))
+
+    assert judged(lambda x, y: [x, y + 2 * np.pi]).passed
+    assert judged(lambda x, y: [x - 2 * np.pi, 2 * np.pi - y]).message == "Joint 2 turns the wrong way."
+    assert judged(lambda x, y: [x, y + 1e-3]).message == "These values do not lead where they should."
+    assert judged(lambda x, y: [1e9, 1e9]).verdict == "wrong"
