@@ -71,10 +71,6 @@ CHAPTERS = {
         "sec-puma560-trap-bracket": "Modified rows in the classic formula",
     },
     "Prismatic joints": {
-        "sec-prismatic-mirror": "The shoulder on the other side",
-        "sec-prismatic-trap-published": "Two published tables",
-    },
-    "Prismatic joints": {
         "sec-prismatic-row": "A joint that slides",
         "sec-prismatic-stanford": "The Stanford arm",
         "sec-prismatic-stanford-check": "Reading its position",
@@ -83,6 +79,7 @@ CHAPTERS = {
         "sec-prismatic-wander": "Heights that wander",
         "sec-prismatic-mirror": "The shoulder on the other side",
         "sec-prismatic-trap-revolute": "The slide treated as a turn",
+        "sec-prismatic-trap-published": "Two published tables",
     },
 }
 
