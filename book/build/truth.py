@@ -86,13 +86,23 @@ class _Figures(HTMLParser):
     def __init__(self) -> None:
         super().__init__()
         self.silent: list[str] = []
+        self.drawings = 0  # open <svg>: what is drawn within a drawing is spoken for by the outer one
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.handle_starttag(tag, attrs)
+        self.handle_endtag(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        self.drawings -= tag == "svg"
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         named = dict(attrs)
         words = (named.get("alt") or named.get("aria-label") or "").strip()
         decoration = named.get("aria-hidden") == "true"
         looks_generated = re.fullmatch(r"(\.\./)*(_images/)?[0-9a-f]{32,}\S*|\S+\.(png|svg|jpe?g)", words)
-        if tag in {"img", "svg", "canvas"} and not decoration and (not words or looks_generated):
+        inner = self.drawings > 0
+        self.drawings += tag == "svg"
+        if tag in {"img", "svg", "canvas"} and not inner and not decoration and (not words or looks_generated):
             self.silent.append(self.get_starttag_text() or tag)
 
 

@@ -76,6 +76,7 @@ def test_every_figure_has_words(site: Path) -> None:
         '<img alt="../_images/0123456789abcdef0123456789abcdef.png" src="a.png">',
         '<img alt="frames.svg" src="frames.svg"/>',
         '<svg viewBox="0 0 1 1"><path/></svg>',
+        '<svg aria-hidden="true"><svg/></svg><svg><path/></svg>',
     ],
 )
 def test_a_silent_figure_would_be_found(figure: str) -> None:
@@ -85,6 +86,7 @@ def test_a_silent_figure_would_be_found(figure: str) -> None:
 def test_a_speaking_figure_passes() -> None:
     assert not silent_figures(
         '<img alt="Two frames" src="a.png"><svg aria-label="Two frames"></svg><svg aria-hidden="true"/>'
+        '<svg aria-hidden="true"><svg viewBox="0 0 1 1"><path/></svg></svg>'
     )
 
 
