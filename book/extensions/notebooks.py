@@ -112,6 +112,8 @@ def loaded(tree: ast.AST) -> set[str]:
         body = tree.body if isinstance(tree, ast.FunctionDef) else [tree.body]
         own |= {name for part in body for name in bound(part)}
         return {name for part in body for name in loaded(part)} - own | loaded(tree.args)
+    if isinstance(tree, ast.AugAssign):  # x += 1 reads x too
+        return {node.id for node in ast.walk(tree.target) if isinstance(node, ast.Name)} | loaded(tree.value)
     if isinstance(tree, ast.Name):
         return {tree.id} if isinstance(tree.ctx, ast.Load) else set()
     return {name for part in ast.iter_child_nodes(tree) for name in loaded(part)}
