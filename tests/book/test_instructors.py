@@ -1,0 +1,110 @@
+"""The page for instructors: each of its commands runs, and does what the page says."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+PAGE = "book/instructors.md"
+
+
+class Outcome(NamedTuple):
+    """What the page promises of a command."""
+
+    code: int
+    says: str
+
+
+COMMANDS = {
+    "pytest --nbval-lax exercises/quickshot.ipynb": Outcome(1, r"18 failed"),
+    "pytest --nbval-lax solutions/quickshot.ipynb": Outcome(0, r"passed"),
+    "pytest --dh-grade solutions/quickshot.ipynb": Outcome(0, r"30 of 30 points"),
+    "dhlib grade handed-in --out marks": Outcome(0, r"marks/grades\.csv"),
+}
+#: Run elsewhere: by tests of their own, and by whoever builds the book.
+TESTED_ELSEWHERE = {"make exercises"}
+
+
+@pytest.fixture
+def page(root: Path) -> str:
+    return (root / PAGE).read_text("utf-8")
+
+
+@pytest.fixture
+def course(root: Path, tmp_path: Path) -> Path:
+    """A folder with the exercises, the solutions, and two notebooks that were handed in: one solved, one not."""
+    for folder in ("exercises", "solutions"):
+        shutil.copytree(root / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "handed-in" / "group").mkdir(parents=True)
+    shutil.copy(root / "solutions" / "quickshot.ipynb", tmp_path / "handed-in" / "solved.ipynb")
+    shutil.copy(root / "exercises" / "quickshot.ipynb", tmp_path / "handed-in" / "group" / "open.ipynb")
+    return tmp_path
+
+
+def commands_of(text: str) -> set[str]:
+    blocks = re.findall(r"^```sh\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+    return {line for block in blocks for line in block.splitlines() if line}
+
+
+def run(command: str, folder: Path) -> tuple[int, str]:
+    tools = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    inherited = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "COV_"))}
+    done = subprocess.run(
+        command.split(), cwd=folder, env={**inherited, "PATH": tools}, capture_output=True, text=True, timeout=300
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_every_command_of_the_page_is_tested(page: str) -> None:
+    assert commands_of(page) == COMMANDS.keys() | TESTED_ELSEWHERE
+
+
+def test_an_untested_command_would_be_found(page: str) -> None:
+    assert commands_of(page + "\n```sh\ndhlib conjure\n```\n") - COMMANDS.keys() == {"dhlib conjure", *TESTED_ELSEWHERE}
+
+
+@pytest.mark.notebooks
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_command_does_what_the_page_says(command: str, course: Path) -> None:
+    code, output = run(command, course)
+    assert code == COMMANDS[command].code, output
+    assert re.search(COMMANDS[command].says, output), output
+
+
+@pytest.mark.notebooks
+def test_a_class_gets_the_table_and_the_pages_that_are_described(page: str, course: Path) -> None:
+    run("dhlib grade handed-in --out marks", course)
+    with (course / "marks" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
+        rows = {row["notebook"]: row for row in csv.DictReader(file)}
+    columns = re.search(r"with the columns (.*?), one for each part, (.*?)\. ", page)
+    assert columns is not None
+    for column in re.findall(r"`(\w+)`", "".join(columns.groups())):
+        assert column in rows["solved.ipynb"]
+    assert (rows["solved.ipynb"]["points"], rows["solved.ipynb"]["out_of"]) == ("30", "30")
+    assert rows["group/open.ipynb"]["points"] == "0"
+    for row in rows.values():
+        assert (course / "marks" / row["feedback"]).is_file()
+
+
+@pytest.mark.notebooks
+def test_exit_codes_are_those_of_the_page(page: str, course: Path) -> None:
+    assert "exit code 0 if all were graded, 1 if some were not, 2 if it was misused" in page
+    (course / "handed-in" / "essay.ipynb").write_text("no notebook", "utf-8")
+    assert run("dhlib grade handed-in --out marks", course)[0] == 1
+    assert run("dhlib grade nowhere --out marks", course)[0] == 2
+
+
+def test_every_option_of_the_page_exists(page: str, course: Path) -> None:
+    code, usage = run("dhlib grade --help", course)
+    assert code == 0
+    options = set(re.findall(r"^\| `(--\w+) ", page, re.MULTILINE))
+    assert options
+    assert all(option in usage for option in options)
