@@ -96,3 +96,8 @@ def test_an_output_that_changed_would_be_found(tmp_path: Path) -> None:
     kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
     nbformat.write(nbformat.v4.new_notebook(cells=[cell], metadata=kernel), tmp_path / "chapter.ipynb")
     assert validate(tmp_path).returncode == 1
+
+
+def test_what_a_line_adds_to_is_needed() -> None:
+    cells = [("short = {}\nfor k in range(3):\n    short |= {k: k}\n", True), ("print(short)", False)]
+    assert plain_sources(cells)[0].startswith("short = {}")
