@@ -41,15 +41,23 @@ CHAPTERS = {
     },
     "Both side by side": {
         "sec-both-columns": "The columns move one row",
+        "sec-both-tool": "At the hand: into the tool",
+        "sec-both-base": "At the base: into the base",
+        "sec-both-frames": "What happens to the frames",
+        "sec-both-tell-parallel": "Look for the upper arm",
+        "sec-both-tell-pose": "Ask for one known pose",
+        "sec-both-tell-never": "Where no table can tell",
     },
     "Quickshot: a worked arm": {
         "sec-quickshot-frames": "Five frames",
         "sec-quickshot-table": "The table, row by row",
         "sec-quickshot-links": "Four link matrices",
         "sec-quickshot-product": "The product",
+        "sec-quickshot-parallel": "Parallel axes add their angles",
         "sec-quickshot-slip": "A slip in print",
         "sec-base-and-tool": "Base and tool",
         "sec-quickshot-tables": "The same arm, other tables",
+        "sec-trap-zero-only": "Tested at zero only",
     },
     "PUMA 560: one arm, five tables": {
         "sec-puma560-frames": "Six axes, six frames",
@@ -69,6 +77,13 @@ CHAPTERS = {
         "sec-puma560-fgl": "Fu, Gonzalez and Lee: three x axes, an offset, a flange",
         "sec-puma560-hand": "False friends: which signs may be changed",
         "sec-puma560-trap-bracket": "Modified rows in the classic formula",
+    },
+    "Mitsubishi PA10: seven joints and six": {
+        "sec-pa10-frames": "Frames and table",
+        "sec-pa10-product": "The product, without twists",
+        "sec-pa10-lengths": "Three sets of lengths",
+        "sec-pa10-6c": "The PA10-6C: one joint less",
+        "sec-pa10-redundancy": "The elbow circle",
     },
     "Prismatic joints": {
         "sec-prismatic-row": "A joint that slides",

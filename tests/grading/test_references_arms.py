@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dhlib import Chain, Prismatic, Revolute
+from dhlib import Chain, Prismatic, Revolute, robots
 from dhlib.grading.exercise import load_exercise
 from dhlib.grading.forms import Frames, Table
 from dhlib.grading.retelling import altered
@@ -21,6 +21,7 @@ ARMS = {
     "puma560": "puma560_craig_classic",
     "stanford": "stanford_classic",
     "scara": "scara_cobra600_classic",
+    "pa10_6c": "pa10_6c_A_classic",
 }
 #: Parts, each with what it should be of the pose T of the last frame.
 WHOLE = {
@@ -37,6 +38,11 @@ WHOLE = {
         "T6_quarter": lambda T: T,
         "wrist": lambda T: T[:3, 3] - 0.263 * T[:3, 2],
     },
+    "pa10_6c": {
+        "T6": lambda T: T,
+        "T6_quarter": lambda T: T,
+        "wrist": lambda T: T[:3, 3] - 0.07 * T[:3, 2],
+    },
     "scara": {"T04": lambda T: T, "T4": lambda T: T, "T4_quarter": lambda T: T},
 }
 #: Parts whose product should be T.
@@ -44,9 +50,10 @@ PRODUCTS = {
     "puma560": [[f"A{i}" for i in range(1, 7)], ["T03", "T36"]],
     "stanford": [],
     "scara": [],
+    "pa10_6c": [],
 }
 #: A function of i and q, whose product over the links should be T.
-LINKS = {"puma560": "link", "stanford": "link", "scara": "link"}
+LINKS = {"puma560": "link", "stanford": "link", "scara": "link", "pa10_6c": "link"}
 #: Z and E of the page, by hand.
 h, r = np.sqrt(3) / 2, np.sqrt(0.5)
 ENDS = {
@@ -216,3 +223,23 @@ def test_the_scara_that_went_wrong_does_what_its_page_says():
         T = Chain(joints, "classic").fk([0, 0, q3, 0])
         assert np.allclose(T[:3, 3], [0.6, 0, 0.387])
         assert np.isclose(np.arctan2(T[1, 0], T[0, 0]), -q3)
+
+
+def test_the_links_of_the_pa10_with_offsets():
+    exercise, poses = with_witness("pa10_6c")
+    link = exercise.part("link")
+    for q, _ in poses:
+        for i in (2, 3):
+            part = exercise.part(f"A{i}")
+            assert np.abs(value(part, part.chain, q) - value(link, link.chain, i, q)).max() < 1e-12
+
+
+def test_one_set_of_lengths_fits_the_calibration_of_the_pa10_6c():
+    exercise, _ = with_witness("pa10_6c")
+    page = (ROOT / "exercises" / "pa10_6c.ipynb").read_text(encoding="utf-8")
+    q = np.deg2rad([20, 35, 60, 0, -45, 0])
+    places = {name: robots.pa10_6c(lengths=name).fk(q)[:3, 3] for name in ("A", "B", "B2")}
+    on_page = {name for name, p in places.items() if "({:.4f}, {:.4f}, {:.4f})".format(*p) in page}
+    assert on_page == {exercise.part("lengths").asks.right}
+    right = places[exercise.part("lengths").asks.right]
+    assert all(np.linalg.norm(p - right) > 0.004 for name, p in places.items() if name not in on_page)
