@@ -18,7 +18,7 @@ from dhlib.errors import DHError
 from dhlib.grading.exercise import Part
 from dhlib.grading.forms import Table
 from dhlib.grading.marks import NEARLY, RIGHT, UNREADABLE, WRONG, Mark, make_mark
-from dhlib.grading.misconceptions import KNOWN, OTHER, Slip, name_one, retellings
+from dhlib.grading.misconceptions import KNOWN, OTHER, TRAP, Slip, name_one, retellings
 from dhlib.grading.poses import listed
 from dhlib.grading.retelling import scaled
 from dhlib.mechanism import FREEDOMS, Sameness, same_mechanism
@@ -126,7 +126,8 @@ def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain) -> Mark
     if _same_pose(answer, reference):
         return make_mark(part, RIGHT)
     verdict = closest(asks, answer, reference)
-    slip = name_one([slip for slip, told in _told_chains(reference) if _is(answer, told)])
+    told_chains = [*_trap_chains(part), *_told_chains(reference)]
+    slip = name_one([slip for slip, told in told_chains if _is(answer, told)])
     if verdict:
         return _same_arm(part, asks, verdict, reference, slip)
     if verdict.mirror:
@@ -207,6 +208,11 @@ def _other_convention(part: Part, asks: Table, answer: Chain, reference: Chain) 
         return make_mark(part, NEARLY, says, known.credit, known)
     says = f"This chain is in the {answer.convention} convention; asked for is a {asks.convention} table."
     return make_mark(part, WRONG, says, 0.0, known)
+
+
+def _trap_chains(part: Part) -> list[tuple[Slip, Chain]]:
+    """Tables that this very task invites: the quantity of a trap is a chain, and its rows are what is compared."""
+    return [(Slip(KNOWN.get(trap.key, TRAP), trap.says), trap.quantity(part.chain)) for trap in part.traps]
 
 
 def _told_chains(reference: Chain) -> list[tuple[Slip, Chain]]:
