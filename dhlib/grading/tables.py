@@ -93,11 +93,10 @@ def read_chain(table: Rows, asks: Table, reference: Chain, degrees: bool = False
         try:  # where no row says what varies, θ and d are the zeros of the joints of this arm
             chain = read(columns, reference.kinds)
         except DHError:
-            if not table["columns"] and _reads(read, OTHER[convention]):
-                asked, other = (", ".join(DEFAULT_COLUMNS[name]) for name in (convention, OTHER[convention]))
-                raise DHError(f"the columns seem to stand as {other}; asked for is {asked}.") from None
+            _refuse_other_columns(table, read, convention)
             raise error from None
     if chain.is_symbolic:
+        _refuse_other_columns(table, read, convention)
         raise DHError("besides the variable of its own joint a row should hold numbers only, and no other symbol.")
     return chain
 
@@ -110,6 +109,13 @@ def _without_numbering(table: Rows) -> Rows:
         columns = table["columns"][1:] if table["columns"] else None
         return {**table, "rows": [row[1:] for row in rows], "columns": columns}
     return table
+
+
+def _refuse_other_columns(table: Rows, read: Callable[[str, str], Chain], convention: str) -> None:
+    """Say so, if the rows make sense with the columns of the other convention."""
+    if not table["columns"] and _reads(read, OTHER[convention]):
+        asked, other = (", ".join(DEFAULT_COLUMNS[name]) for name in (convention, OTHER[convention]))
+        raise DHError(f"the columns seem to stand as {other}; asked for is {asked}.") from None
 
 
 def _reads(read: Callable[[str, str], Chain], convention: str) -> bool:
@@ -127,6 +133,7 @@ def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain) -> Mark
         return make_mark(part, RIGHT)
     verdict = closest(asks, answer, reference)
     told_chains = [*_trap_chains(part), *_told_chains(reference)]
+    told_chains = [(slip, told) for slip, told in told_chains if not _is(reference, told)]
     slip = name_one([slip for slip, told in told_chains if _is(answer, told)])
     if verdict:
         return _same_arm(part, asks, verdict, reference, slip)

@@ -169,3 +169,20 @@ def test_a_revolute_joint_taken_for_a_prismatic_one_is_told():
     joints[2] = Revolute(d=0.3, a=joints[2].a, alpha=joints[2].alpha)
     got = mark(part, read_answer(part.asks.request(), Chain(joints, "classic")))
     assert got.message == "Joint 3 is prismatic: d varies and θ is constant."
+
+
+def test_columns_of_the_other_convention_are_told_even_where_they_can_be_read():
+    """A θ in the place of a reads as a link that varies, unless one looks again."""
+    part = Part("t", "T", 2, Table("classic"), arm=robots.planar(2))
+    got = mark(part, read_answer(part.asks.request(), [[0, 0, q, 0] for q in sp.symbols("theta1:3")]))
+    assert got.verdict == "unreadable"
+    assert "seem to stand as alpha, a, theta, d" in got.message
+
+
+def test_a_right_row_is_no_slip():
+    """With α = 0 a wrong sign of α is no other table: what is wrong here is the end alone."""
+    arm = robots.planar(2, "modified")
+    part = Part("t", "T", 2, Table("modified"), arm=Chain(arm.joints, "modified"))
+    got = mark(part, read_answer(part.asks.request(), arm))
+    assert (got.verdict, got.misconception) == ("nearly", "ends")
+    assert "frame 2 would not be where the task puts it" in got.message
