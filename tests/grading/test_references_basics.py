@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from dhlib import Chain, Revolute
 from dhlib.grading.exercise import load_exercise
+from dhlib.mechanism import same_mechanism
 
 ROOT = Path(__file__).parents[2]
 WITNESS = json.loads((ROOT / "tests" / "dhlib" / "fk_cases.json").read_text(encoding="utf-8"))["robots"]
@@ -147,3 +149,61 @@ def test_the_orders_are_counted_in_symbols():
         sp.ImmutableMatrix((A * B * C * D).expand()) for A, B, C, D in permutations([turn_z, slide_z, slide_x, turn_x])
     }
     assert len(made) == part_of("one_link", "products")(())
+
+
+# Planar arms: the witness has links of length 1; with those of the page the same is worked out by hand.
+
+
+def planar_witness(n, convention):
+    robot = WITNESS.get(f"planar{n}r_{convention}")
+    joints = [Revolute(a=row["a"], alpha=row["alpha"], d=row["d"], offset=row["theta_offset"]) for row in robot["dh"]]
+    return Chain(joints, convention), np.array(robot["tool"]), [(c["q"], np.array(c["T"])) for c in robot["cases"]]
+
+
+@pytest.mark.parametrize(("part_id", "n"), [("T2", 2), ("T2_sym", 2), ("T3", 3), ("T3_sym", 3)])
+def test_planar_products_agree_with_the_witness(part_id, n):
+    quantity = load_exercise("planar", ROOT / "exercises").part(part_id).asks.quantity
+    chain, tool, poses = planar_witness(n, "classic")
+    for q, T in poses:
+        assert np.abs(quantity(chain, q) @ tool - T).max() < 1e-12
+    bent = next(q for q, _ in poses if np.abs(np.sin(q)).min() > 0.1)
+    other = Chain(chain.joints, "modified")  # negative control
+    assert np.abs(quantity(other, bent) - quantity(chain, bent)).max() > 0.1
+
+
+def test_modified_planar_products_agree_with_the_witness():
+    quantity = load_exercise("planar", ROOT / "exercises").part("T2_modified").asks.quantity
+    chain, tool, poses = planar_witness(2, "modified")
+    for q, T in poses:
+        assert np.abs(quantity(chain, q) @ tool - T).max() < 1e-12
+        assert np.abs(quantity(chain, q) - T).max() > 0.1  # negative control: without the tool
+
+
+def by_hand(q, lengths):
+    turned = np.cumsum(q)
+    T = np.eye(4)
+    T[0, :2], T[1, :2] = [np.cos(turned[-1]), -np.sin(turned[-1])], [np.sin(turned[-1]), np.cos(turned[-1])]
+    T[:2, 3] = np.cos(turned) @ lengths, np.sin(turned) @ lengths
+    return T
+
+
+def test_the_lengths_of_the_planar_page():
+    for n in (2, 3):  # the way by hand has the same witness
+        for q, T in planar_witness(n, "classic")[2]:
+            assert np.abs(by_hand(q, np.ones(n)) - T).max() < 1e-12
+    q = np.deg2rad([35, -70, 50])
+    right = {"T2": by_hand(q[:2], [260, 190]), "T3": by_hand(q, [260, 190, 110])}
+    assert np.allclose(part_of("planar", "T2")(q[:2]), right["T2"])
+    assert np.allclose(part_of("planar", "T3")(q), right["T3"])
+    assert np.allclose(part_of("planar", "T3_with_tool")(q), right["T3"])
+    assert np.allclose(part_of("planar", "T2_modified")(q[:2]) @ part_of("planar", "E2")(()), right["T2"])
+    link = part_of("planar", "link3")
+    hand = np.eye(4)
+    hand[0, 3] = 110
+    assert np.allclose(np.linalg.multi_dot([*(link(i, q) for i in (1, 2, 3)), hand]), right["T3"])
+    exercise = load_exercise("planar", ROOT / "exercises")
+    for part_id, lengths in {"table2": [260, 190], "table3": [260, 190, 110]}.items():
+        drawn = Chain([Revolute(a=length) for length in lengths], "classic")
+        assert same_mechanism(drawn, exercise.part(part_id).chain, free=())
+        exchanged = Chain([Revolute(a=length) for length in lengths[::-1]], "classic")
+        assert not same_mechanism(exchanged, exercise.part(part_id).chain)  # negative control
