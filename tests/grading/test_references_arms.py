@@ -22,6 +22,7 @@ ARMS = {
     "stanford": "stanford_classic",
     "scara": "scara_cobra600_classic",
     "pa10_6c": "pa10_6c_A_classic",
+    "pa10_7c": "pa10_7c_A_classic",
 }
 #: Parts, each with what it should be of the pose T of the last frame.
 WHOLE = {
@@ -43,6 +44,7 @@ WHOLE = {
         "T6_quarter": lambda T: T,
         "wrist": lambda T: T[:3, 3] - 0.07 * T[:3, 2],
     },
+    "pa10_7c": {"T7": lambda T: T, "T7_quarter": lambda T: T},
     "scara": {"T04": lambda T: T, "T4": lambda T: T, "T4_quarter": lambda T: T},
 }
 #: Parts whose product should be T.
@@ -51,9 +53,10 @@ PRODUCTS = {
     "stanford": [],
     "scara": [],
     "pa10_6c": [],
+    "pa10_7c": [],
 }
 #: A function of i and q, whose product over the links should be T.
-LINKS = {"puma560": "link", "stanford": "link", "scara": "link", "pa10_6c": "link"}
+LINKS = {"puma560": "link", "stanford": "link", "scara": "link", "pa10_6c": "link", "pa10_7c": "link"}
 #: Z and E of the page, by hand.
 h, r = np.sqrt(3) / 2, np.sqrt(0.5)
 ENDS = {
@@ -234,12 +237,44 @@ def test_the_links_of_the_pa10_with_offsets():
             assert np.abs(value(part, part.chain, q) - value(link, link.chain, i, q)).max() < 1e-12
 
 
-def test_one_set_of_lengths_fits_the_calibration_of_the_pa10_6c():
-    exercise, _ = with_witness("pa10_6c")
-    page = (ROOT / "exercises" / "pa10_6c.ipynb").read_text(encoding="utf-8")
-    q = np.deg2rad([20, 35, 60, 0, -45, 0])
-    places = {name: robots.pa10_6c(lengths=name).fk(q)[:3, 3] for name in ("A", "B", "B2")}
-    on_page = {name for name, p in places.items() if "({:.4f}, {:.4f}, {:.4f})".format(*p) in page}
-    assert on_page == {exercise.part("lengths").asks.right}
-    right = places[exercise.part("lengths").asks.right]
-    assert all(np.linalg.norm(p - right) > 0.004 for name, p in places.items() if name not in on_page)
+@pytest.mark.parametrize(
+    ("name", "arm", "degrees"),
+    [
+        ("pa10_6c", robots.pa10_6c, [20, 35, 60, 0, -45, 0]),
+        ("pa10_7c", robots.pa10_7c, [20, 35, -40, 60, 10, -45, 0]),
+    ],
+)
+def test_one_set_of_lengths_fits_the_calibration(name, arm, degrees):
+    exercise, _ = with_witness(name)
+    page = (ROOT / "exercises" / f"{name}.ipynb").read_text(encoding="utf-8")
+    places = {each: arm(lengths=each).fk(np.deg2rad(degrees))[:3, 3] for each in ("A", "B", "B2")}
+    on_page = {each for each, p in places.items() if "({:.4f}, {:.4f}, {:.4f})".format(*p) in page}
+    right = exercise.part("lengths").asks.right
+    assert on_page == {right}
+    assert all(np.linalg.norm(p - places[right]) > 0.004 for each, p in places.items() if each != right)
+
+
+def test_elbow_and_wrist_of_the_given_hand():
+    """The lengths of the arm, and the plane through the vertical; the page has the pose of the marker."""
+    exercise, _ = with_witness("pa10_7c")
+    W, E, radius = (value(exercise.part(part), exercise.arm, None) for part in ("W", "E", "radius"))
+    S = np.array([0, 0, 0.317])
+    assert np.isclose(np.linalg.norm(E - S), 0.45, atol=1e-5)
+    assert np.isclose(np.linalg.norm(E - W), 0.48, atol=1e-5)
+    w = (W - S) / np.linalg.norm(W - S)
+    assert np.isclose(np.linalg.norm(np.cross(E - S, w)), radius, atol=1e-5)
+    assert abs(np.cross(E - S, w) @ [0, 0, 1]) < 1e-9
+    assert E[2] > (S + ((E - S) @ w) * w)[2]
+    notebook = json.loads((ROOT / "solutions" / "pa10_7c.ipynb").read_text(encoding="utf-8"))
+    names = {"np": np}
+    exec("".join(next(cell["source"] for cell in notebook["cells"] if cell["id"] == "given")), names)
+    T = names["T_given"]
+    assert np.abs(T[:3, 3] - 0.07 * T[:3, 2] - W).max() < exercise.part("W").asks.tolerance / 5
+
+
+def test_shoulder_and_elbow_of_the_pa10_by_the_links():
+    exercise, poses = with_witness("pa10_7c")
+    link, part = exercise.part("link"), exercise.part("T04")
+    for q, _ in poses:
+        product = reduce(np.matmul, [value(link, link.chain, i, q) for i in range(1, 5)])
+        assert np.abs(value(part, part.chain, q) - product).max() < 1e-12
