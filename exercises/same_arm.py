@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from dhlib import Chain, Tx, robots
+from dhlib import Chain, Tx, Ty, Tz, robots
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Choice, Function, Numbers, Table
 
@@ -120,6 +120,10 @@ EXERCISE = Exercise(
                 Trap("This is the last link of B. H is what is missing from it to that of A.", lambda _, q: Tx(0.05)),
                 Trap("This is the whole last link of A; part of it is in B already.", lambda _, q: Tx(0.2)),
                 Trap("The two last links differ in length; they are not added.", lambda _, q: Tx(0.25)),
+                Trap("With this H nothing is added; but A reaches further than B.", lambda _, q: np.eye(4)),
+                Trap("Lengths are in metres on this page.", lambda _, q: Tx(150), "unit"),
+                Trap("The last link lies along x3, and so does what is missing from it.", lambda _, q: Ty(0.15)),
+                Trap("The last link lies along x3, and so does what is missing from it.", lambda _, q: Tz(0.15)),
             ],
         ),
         translation(
@@ -134,6 +138,12 @@ EXERCISE = Exercise(
                 ("Joint 2 is right. The next joint has to take its half turn back.", [0, 180, 0], 1, "trap"),
                 ("Joint 3 is right. The link before it still points backwards.", [0, 0, 180], 1, "trap"),
                 ("This is x1 reversed; the sign of a2 is that of x2.", [180, 180, 0], 1, "trap"),
+                (
+                    "Reversing an x axis gives half a turn to two joints; no joint counts otherwise.",
+                    0,
+                    [1, -1, 1],
+                    "sense",
+                ),
                 ("Only two joints gain half a turn: those on both sides of x2.", [180, 180, 180], 1, "trap"),
             ],
         ),
@@ -169,6 +179,7 @@ EXERCISE = Exercise(
             traps=[
                 Trap("The sign: with a3 alone, which way has the wrist gone?", lambda _, q: D2 - 0.02),
                 Trap("With d2 as it is the wrist stands 0.02 m aside.", lambda _, q: D2),
+                Trap("Lengths are in metres on this page.", lambda _, q: 1000 * (D2 + 0.02), "unit"),
                 Trap("That is a3. How far should the wrist be from axis 1, and how far is it?", lambda _, q: 0.02),
                 Trap("The wrist would be on the other side of the shoulder.", lambda _, q: -D2 - 0.02),
                 Trap(
@@ -187,6 +198,12 @@ EXERCISE = Exercise(
             [1, -1, 1, 1, 1, 1],
             section="sec-prismatic-mirror",
             traps=[
+                (
+                    "The waist is right; now axis 2 points the other way, and the wrist has turned.",
+                    [180, 0, 0, 0, 0, 0],
+                    1,
+                    "trap",
+                ),
                 (
                     "The arm is right; the wrist has to take back half a turn.",
                     [180, 0, 0, 0, 0, 0],
