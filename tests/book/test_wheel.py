@@ -1,4 +1,4 @@
-"""The wheel holds the library and what the exercises ask, and nothing else."""
+"""The wheel holds the library, its pytest option and the exercises as students get them, and nothing else."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ def test_wheel(root: Path, tmp_path: Path) -> None:
     ignore = shutil.ignore_patterns("__pycache__")
     for name in ("dhlib", "tests"):
         shutil.copytree(root / name, source / name, ignore=ignore)
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
+    for name in ("pyproject.toml", "README.md", "LICENSE", "pytest_dhlib.py"):
         shutil.copy(root / name, source)
-    (source / "exercises").mkdir()
-    for name in ("arm.py", "arm.ipynb"):
-        (source / "exercises" / name).write_text("")
+    for name in ("exercises/arm.py", "exercises/arm.ipynb", "solutions/arm.ipynb", "book/arm.md"):
+        (source / name).parent.mkdir(exist_ok=True)
+        (source / name).write_text("")
     build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel"]
     subprocess.run(build, cwd=source, check=True, capture_output=True)
     (wheel,) = (source / "dist").glob("*.whl")
     names = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
     library = {path.relative_to(root).as_posix() for path in (root / "dhlib").rglob("*.py")}
-    assert {name for name in names if name.endswith(".py")} == library | {"dhlib/_exercises/arm.py"}
-    assert all(name.startswith("dhlib/") for name in names)
-    assert "dhlib/_exercises/arm.ipynb" not in names
+    assert {name for name in names if name.endswith(".py")} == library | {"dhlib/_exercises/arm.py", "pytest_dhlib.py"}
+    assert all(name.startswith("dhlib/") for name in names - {"pytest_dhlib.py"})
+    assert {name for name in names if name.endswith(".ipynb")} == {"dhlib/_exercises/arm.ipynb"}
