@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -70,6 +71,23 @@ def test_pages(browser: Any, site: Path, address: str, scheme: str, width: int, 
     assert not watch.strangers
     assert not watch.complaints
     assert not faults
+
+
+def sheets(browser: Any, page_address: str) -> int:
+    """How many sheets of A4 a page takes when it is printed."""
+    page = browser.new_page()
+    page.goto(page_address)
+    printed = page.pdf(format="A4")
+    page.close()
+    return len(re.findall(rb"/Type\s*/Page\b", printed))
+
+
+def test_the_summary_prints_on_one_sheet(browser: Any, site: Path) -> None:
+    assert sheets(browser, (site / "book" / "cheatsheet.html").as_uri()) == 1
+
+
+def test_another_page_takes_more(browser: Any, site: Path) -> None:
+    assert sheets(browser, (site / "book" / "notation.html").as_uri()) > 1
 
 
 # A formula is set when its drawing has a size, each glyph it uses is on the page, and no source is left over.
