@@ -22,6 +22,13 @@ CHANGES = {
         ("* Rz(-sp.pi / 2)\nB2", "* Rz(sp.pi / 2)\nB2"),
         ("right = pen_if(first + second)", "right = pen_if(first - second)"),
     ],
+    "classic": [
+        ("turned = frame_0 @ Rz(theta_1)", "turned = frame_0 @ Rz(-theta_1)"),
+        ("pushed = lifted @ Tx(a_1)", "pushed = lifted @ Tx(-a_1)"),
+        ("level = Axis([0, 10, 30]", "level = Axis([5, 10, 30]"),
+        ("early = Tz(d) * Tx(a) * Rz(theta)", "early = Tz(d) * Rz(theta) * Tx(a)"),
+        ("arm.frames([0, 0.5, 0])", "arm.frames([0, 0, 0.5])"),
+    ],
     "base_tool": [
         ("Tz(0.67183) @ Rz(-90 * degrees)\n\nx_0", "Tz(0.67183) @ Rz(90 * degrees)\n\nx_0"),
         ("np.allclose(X, Z @ T6 @ E)", "np.allclose(X, E @ T6 @ Z)"),
