@@ -77,7 +77,7 @@ lint: $(READY)
 
 test: lint $(NODE_READY)
 	@echo '── tests ──'
-	@$(RUN) book/build/chromium.py
+	@PYTHONPATH=book/build $(RUN) tests/machine.py
 	@$(BIN)/pytest -n auto --dist worksteal $(PYTEST)
 
 exercises: $(VENV_READY)
