@@ -2,7 +2,7 @@
 
 Imports run one way, and the two halves never meet in one process when strangers' notebooks are graded:
 
-* untrusted, beside the student's code: `answers` reads an answer into plain JSON; `box` runs a notebook;
+* untrusted, beside the student's code: `answers` reads an answer into plain JSON; `wall` runs a notebook;
 * trusted, beside the references: `forms` and `exercise` say what is asked, `misconceptions` what goes wrong,
   `marking` judges, and `check`, `plugin` and `grade` are its faces.
 """

@@ -12,6 +12,7 @@ from typing import Any
 
 from dhlib.errors import DHError
 from dhlib.grading.grade import FAILED, GRADED, Result, grade_notebook
+from dhlib.grading.wall import Limits
 
 DESCRIPTION = """\
 Grade notebooks: put the answers of each into the pristine exercise, run it in a process of its own, mark the answers,
@@ -95,7 +96,7 @@ def _grade_all(paths: Sequence[Path], options: argparse.Namespace) -> Iterator[R
 
     def grade_one(path: Path) -> Result:
         try:
-            return grade_notebook(path, options.exercise, options.exercises, options.timeout)
+            return grade_notebook(path, options.exercise, options.exercises, Limits.of(options.timeout))
         except DHError:
             raise
         except Exception as error:  # ours to mend; the others should not suffer

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,7 +12,7 @@ from dhlib.grading.exercise import Exercise, find_exercise, load_exercise
 from dhlib.grading.marking import Marker
 from dhlib.grading.marks import OPEN, Mark
 from dhlib.grading.notebook import Cell, exercise_name, load_notebook, merge, read_cells
-from dhlib.grading.runner import Outcome, run_notebook
+from dhlib.grading.wall import Limits, Outcome, Sandbox
 
 GRADED, INCOMPLETE, UNREADABLE, FAILED = "graded", "stopped", "unreadable", "failed"
 
@@ -50,7 +51,12 @@ class Result:
 
 
 def grade_notebook(
-    path: str | Path, name: str = "", exercises: str | Path | None = None, seconds: float = 60.0
+    path: str | Path,
+    name: str = "",
+    exercises: str | Path | None = None,
+    limits: Limits | None = None,
+    *,
+    sandbox: Sandbox | None = None,
 ) -> Result:
     """Grade one notebook.
 
@@ -61,8 +67,10 @@ def grade_notebook(
         The exercise; by default what the notebook's metadata says, else its file name.
     exercises : path, optional
         Where to look for exercises first.
-    seconds : float
-        Time limit.
+    limits : Limits, optional
+        What it may use; by default those of the sandbox.
+    sandbox : Sandbox, optional
+        Where it runs; one is started for it if left out, which takes a second.
 
     Returns
     -------
@@ -85,7 +93,9 @@ def grade_notebook(
         return Result(path, UNREADABLE, f"{path.name} does not say which exercise it is; name it with --exercise NAME.")
     cells = merge(pristine, submission)
     requests = {part.id: part.asks.request() for part in exercise.parts}
-    outcome = run_notebook(cells, requests, seconds)
+    with contextlib.ExitStack() as stack:
+        sandbox = sandbox or stack.enter_context(Sandbox())
+        outcome = sandbox.run(cells, requests, limits)
     marks = [_with_error(mark, cells, outcome) for mark in Marker(exercise).mark_all(outcome.readings)]
     return Result(path, INCOMPLETE if outcome.note else GRADED, outcome.note, exercise, marks)
 

@@ -15,6 +15,7 @@ from dhlib.grading.check import tell
 from dhlib.grading.exercise import Part
 from dhlib.grading.grade import GRADED, Result, grade_notebook
 from dhlib.grading.marks import Mark
+from dhlib.grading.wall import Limits
 
 
 class NotYet(Exception):
@@ -31,7 +32,8 @@ class GradedNotebook(pytest.File):
         """What came of it; graded when first asked for."""
         if self._result is None:
             option = self.config.option
-            self._result = grade_notebook(self.path, option.dh_exercise, option.dh_exercises, option.dh_timeout)
+            limits = Limits.of(option.dh_timeout)
+            self._result = grade_notebook(self.path, option.dh_exercise, option.dh_exercises, limits)
         return self._result
 
     def collect(self) -> Iterator[pytest.Item]:

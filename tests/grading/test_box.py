@@ -8,7 +8,8 @@ import time
 import pytest
 
 from dhlib.grading.notebook import Cell
-from dhlib.grading.runner import run_notebook
+from dhlib.grading.wall import Limits
+from dhlib.grading.wall.plain import run_notebook
 
 REQUESTS = {"A": {"form": "numbers", "shape": []}, "B": {"form": "numbers", "shape": []}}
 
@@ -19,7 +20,7 @@ def run(first, second="B = 2", seconds=30.0, cell_seconds=None, setup="import ma
         Cell(first, role="answer", part="A"), Cell("", role="check", part="A"),
         Cell(second, role="answer", part="B"), Cell("", role="check", part="B"),
     ]  # fmt: skip
-    return run_notebook(cells, REQUESTS, seconds, cell_seconds)
+    return run_notebook(cells, REQUESTS, Limits(cell_seconds or seconds / 3, seconds))
 
 
 def test_answers_come_back():
@@ -85,7 +86,7 @@ def test_a_function_that_never_returns_costs_its_part():
         Cell("def f(i):\n    while True: pass", role="answer", part="f"), Cell("", role="check", part="f"),
         Cell("B = 2", role="answer", part="B"), Cell("", role="check", part="B"),
     ]  # fmt: skip
-    outcome = run_notebook(cells, requests, 30, 1)
+    outcome = run_notebook(cells, requests, Limits(1, 30))
     assert outcome.readings == {"f": {"fault": "timeout"}, "B": {"values": [2.0]}}
 
 

@@ -1,6 +1,6 @@
 """The untrusted process: run one notebook's cells, read its answers, send them home as JSON.
 
-Started by `runner` as ``python -m dhlib.grading.box`` with a job on standard input:
+Started by `plain` as ``python -m dhlib.grading.wall.plain_box`` with a job on standard input:
 
     {"cells": [{"source": …, "role": …, "part": …}, …], "requests": {part: request, …}, "skip": […], "cell_seconds": …}
 
@@ -31,7 +31,7 @@ class OutOfTime(BaseException):
 
 @contextlib.contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Interrupt what runs after so many seconds, where the system has alarms; `runner` has a limit of its own."""
+    """Interrupt what runs after so many seconds, where the system has alarms; `plain` has a limit of its own."""
     if not hasattr(signal, "setitimer"):
         yield
         return

@@ -1,4 +1,7 @@
-"""The trusted side of the box: start it, hear its answers, end it in time."""
+"""Without walls: a notebook in a process of its own, with limits of time and output and nothing more.
+
+For one's own notebooks, and where `dhlib grade --unsafe-no-sandbox` was asked for.
+"""
 
 from __future__ import annotations
 
@@ -12,45 +15,18 @@ import tempfile
 import threading
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 from dhlib.grading.notebook import Cell
+from dhlib.grading.wall.limits import LONGEST_ERROR, Limits, Outcome
 
-#: More than this is no set of answers.
-MOST_BYTES = 4_000_000
-LONGEST_ERROR = 300
 #: How often a box that died is started anew without the cell that killed it.
 RESTARTS = 4
 #: How long after its alarm a cell may take to stop before it is stopped.
 GRACE = 1.0
 
 
-@dataclass
-class Outcome:
-    """What came back from a box.
-
-    Parameters
-    ----------
-    readings : dict
-        Part to reading; not validated.
-    errors : dict
-        Number of a cell to the error it stopped with.
-    killers : dict
-        Number of a cell that ended the whole process to how.
-    note : str
-        What to say about the run as a whole; empty if all went well.
-    """
-
-    readings: dict[str, Any] = field(default_factory=dict)
-    errors: dict[int, str] = field(default_factory=dict)
-    killers: dict[int, str] = field(default_factory=dict)
-    note: str = ""
-
-
-def run_notebook(
-    cells: Sequence[Cell], requests: Mapping[str, Any], seconds: float = 60.0, cell_seconds: float | None = None
-) -> Outcome:
+def run_notebook(cells: Sequence[Cell], requests: Mapping[str, Any], limits: Limits) -> Outcome:
     """Run the cells of a merged notebook in a process of its own, and return the answers.
 
     A cell that ends the process, or never ends, costs its own answers: the rest runs again without it, within the
@@ -61,22 +37,20 @@ def run_notebook(
     cells : sequence of Cell
     requests : mapping
         Part to request; nothing of the solution goes into the box.
-    seconds : float
-        Limit for the notebook.
-    cell_seconds : float, optional
-        Limit for each cell and each answer; a third of the notebook's if left out.
+    limits : Limits
+        Those of time and output; the others are for walls to hold.
     """
     outcome = Outcome()
-    deadline = time.monotonic() + seconds
+    deadline = time.monotonic() + limits.notebook_seconds
     heard = False
     for _ in range(RESTARTS + 1):
         job = {
             "cells": [{"source": cell.source, "role": cell.role, "part": cell.part} for cell in cells],
             "requests": dict(requests),
             "skip": sorted(outcome.killers),
-            "cell_seconds": cell_seconds or seconds / 3,
+            "cell_seconds": limits.cell_seconds,
         }
-        state = _run_once(job, outcome, deadline)
+        state = _run_once(job, outcome, deadline, limits.output_bytes)
         heard = heard or state["heard"]
         if state["done"]:
             return outcome
@@ -86,7 +60,7 @@ def run_notebook(
             break
         outcome.killers[last] = "ended the program"
     if time.monotonic() >= deadline:
-        outcome.note = f"The notebook was stopped after {seconds:g} s."
+        outcome.note = f"The notebook was stopped after {limits.notebook_seconds:g} s."
     elif heard:
         outcome.note = "The notebook ended its own program."
     else:
@@ -94,12 +68,12 @@ def run_notebook(
     return outcome
 
 
-def _run_once(job: dict[str, Any], outcome: Outcome, deadline: float) -> dict[str, Any]:
+def _run_once(job: dict[str, Any], outcome: Outcome, deadline: float, budget: int) -> dict[str, Any]:
     """Run the box once; return in which cell it ended, if in one, and whether it came to its end."""
     state: dict[str, Any] = {"cell": None, "since": 0.0, "done": False, "heard": False}
     with tempfile.TemporaryDirectory(prefix="dhlib-") as folder:
         process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "dhlib.grading.box"],
+            [sys.executable, "-P", "-m", "dhlib.grading.wall.plain_box"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -107,7 +81,7 @@ def _run_once(job: dict[str, Any], outcome: Outcome, deadline: float) -> dict[st
             env=_environment(folder),
             start_new_session=True,
         )
-        listener = threading.Thread(target=_listen, args=(process, outcome, state), daemon=True)
+        listener = threading.Thread(target=_listen, args=(process, outcome, state, budget), daemon=True)
         listener.start()
         with contextlib.suppress(OSError):
             assert process.stdin is not None
@@ -141,10 +115,9 @@ def _environment(folder: str) -> dict[str, str]:
     }
 
 
-def _listen(process: subprocess.Popen[bytes], outcome: Outcome, state: dict[str, Any]) -> None:
+def _listen(process: subprocess.Popen[bytes], outcome: Outcome, state: dict[str, Any], budget: int) -> None:
     """Read messages line by line; what is not one is left out."""
     assert process.stdout is not None
-    budget = MOST_BYTES
     while budget > 0 and (line := process.stdout.readline(budget)):
         budget -= len(line)
         try:
