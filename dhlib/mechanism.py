@@ -25,7 +25,8 @@ from dhlib.show import angle_text, number_text
 from dhlib.transforms import inverse
 
 FREEDOMS = ("base", "tool", "zeros", "senses")
-
+#: What stands in a reason before the number of the reference.
+_EXPECTED = ", expected "
 #: Which freedoms are tried, one after the other, and with other joint zeros if they do not do.
 ENDS: tuple[tuple[str, ...], ...] = ((), ("tool",), ("base",), ("base", "tool"))
 ZEROS = tuple((*ends, "zeros") for ends in ENDS)
@@ -117,6 +118,21 @@ class Sameness:
     def same_senses(self) -> bool:
         """Whether every joint counts the same way: σ is +1."""
         return self.same and all(sign == 1 for sign in self.signs)
+
+    @property
+    def finding(self) -> str:
+        """The reason without the number that was expected, for whoever should find it.
+
+        Examples
+        --------
+        >>> from dhlib import Chain, Revolute
+        >>> arms = [Chain([Revolute(a=a), Revolute(a=1)], "classic") for a in (1, 2)]
+        >>> same_mechanism(*arms).reason
+        'distance between axes 1 and 2 is 1, expected 2'
+        >>> same_mechanism(*arms).finding
+        'distance between axes 1 and 2 is 1'
+        """
+        return self.reason.partition(_EXPECTED)[0]
 
     @property
     def message(self) -> str:
@@ -418,7 +434,7 @@ def _difference(pair: _Pair, i: int) -> str:
 
 
 def _expected(what: str, found: str, expected: str) -> str:
-    return f"{what} is {found}, expected {expected}"
+    return f"{what} is {found}{_EXPECTED}{expected}"
 
 
 # What else is worth saying

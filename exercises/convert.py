@@ -3,8 +3,9 @@
 import numpy as np
 
 from dhlib import Chain, Rx, Rz, Tx, Tz
+from dhlib.grading.asking import choice, constant, pose
 from dhlib.grading.exercise import Exercise, Part, Trap
-from dhlib.grading.forms import Choice, Function, Numbers, Table
+from dhlib.grading.forms import Function, Numbers, Table
 
 quarter = np.pi / 2
 #: Tables as the page gives them, in millimetres: theta, d, a, alpha of W; alpha, a, theta, d of V.
@@ -97,23 +98,15 @@ def to_classic(rows, last=None, roll=-1):
 
 def poses(part, title, points, right, section, wrong):
     """A pose that is given by the task, and what else is handed in for it."""
-    traps = [Trap(says, lambda _, q, value=value: value) for says, value in wrong]
-    asks = Numbers(lambda _, q: right, at=())
+    traps = [Trap(says, constant(value)) for says, value in wrong]
+    asks = Numbers(constant(right), at=())
     return Part(part, title, points, asks, section=section, arm=bare(W), traps=traps)
 
 
 def rearranged(part, title, points, rule, calls, traps):
     asks = Function(lambda _, rows: rule(rows), shape=(5, 4), calls=[(c,) for c in calls], signature=f"{part}(rows)")
     traps = [Trap(says, lambda _, rows, wrong=wrong: wrong(rows)) for says, wrong in traps]
-    return Part(part, title, points, asks, section="sec-both-columns", traps=traps)
-
-
-def choice(part, title, right, section, because):
-    return Part(part, title, 1, Choice(because, right), section=section)
-
-
-def pose(arm, q):
-    return arm.T(0, 4, q)
+    return Part(part, title, points, asks, section="sec-both-columns", traps=traps, kinematics=False)
 
 
 X2, X4, X0 = link(W, 2), link(W, 4), Tx(V.joints[0].a) @ Rx(V.joints[0].alpha)
@@ -132,6 +125,7 @@ EXERCISE = Exercise(
             section="sec-both-columns",
             arm=bare(W.to_modified()),
             traps=rows_not_moved(W, down=True),
+            kinematics=False,
         ),
         poses(
             "tool",
@@ -159,6 +153,7 @@ EXERCISE = Exercise(
             section="sec-both-columns",
             arm=bare(V.to_classic()),
             traps=rows_not_moved(V, down=False),
+            kinematics=False,
         ),
         poses(
             "base",
@@ -256,31 +251,31 @@ EXERCISE = Exercise(
             "stays",
             "What is the same",
             "x_2",
-            "sec-both-frames",
             {
                 "x_2": "both x_2 point along the common normal of axes 2 and 3.",
                 "y_2": "y_2 is turned by α_2, as z_2 is.",
                 "z_2": "z_2 lies on axis 3 in the classic convention, and on axis 2 in the modified one.",
                 "O_2": "O_2 is at the far end of the normal in the classic convention, at the near one in the other.",
             },
+            "sec-both-frames",
         ),
         choice(
             "axis",
             "Whose axis",
             "z_3",
-            "sec-both-frames",
             {
                 "z_1": "classic z_2 lies on axis 3; modified z_1 lies on axis 1.",
                 "z_2": "classic z_2 lies on axis 3; modified z_2 lies on axis 2.",
                 "z_3": "both lie on axis 3: it is that of joint 3.",
             },
+            "sec-both-frames",
         ),
-        Part("T_classic", "Read as classic", 2, Numbers(pose, at=JOINTS), section="sec-classic-product"),
+        Part("T_classic", "Read as classic", 2, Numbers(pose(0, 4), at=JOINTS), section="sec-classic-product"),
         Part(
             "T_modified",
             "Read as modified",
             2,
-            Numbers(pose, at=JOINTS),
+            Numbers(pose(0, 4), at=JOINTS),
             section="sec-modified-product",
             arm=read_as("modified"),
         ),
@@ -288,34 +283,34 @@ EXERCISE = Exercise(
             "label_1",
             "By one known pose",
             "modified",
-            "sec-both-tell-pose",
             {
                 "classic": "look at p of your T_classic: it is not where the hand was measured.",
                 "modified": "the hand was measured where T_modified says.",
                 "cannot tell": "the two readings put the hand in different places, and one of them was measured.",
             },
+            "sec-both-tell-pose",
         ),
         choice(
             "label_2",
             "By the upper arm",
             "classic",
-            "sec-both-tell-parallel",
             {
                 "classic": "the link between axes 2 and 3 is link 2, and it stands in row 2.",
                 "modified": "in a modified table row 2 holds the link between axes 1 and 2, and they are not parallel.",
                 "cannot tell": "the link between axes 2 and 3 is known: in which row does it stand?",
             },
+            "sec-both-tell-parallel",
         ),
         choice(
             "label_3",
             "Three equal rows",
             "cannot tell",
-            "sec-both-tell-never",
             {
                 "classic": "moved down by a row, would the columns look different?",
                 "modified": "moved up by a row, would the columns look different?",
                 "cannot tell": "all rows are equal: read either way it is the same arm, with another base or tool.",
             },
+            "sec-both-tell-never",
         ),
     ],
 )

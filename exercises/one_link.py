@@ -6,6 +6,7 @@ from itertools import permutations
 import numpy as np
 
 from dhlib import Chain, Revolute, Rx, Ry, Rz, Tx, Ty, Tz, classic, modified
+from dhlib.grading.asking import choice, constant, number
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Function, Numbers
 from dhlib.grading.misconceptions import retold
@@ -44,27 +45,24 @@ def formula(part, title, points, convention, names, section, shape=(4, 4), traps
     make, take = link(convention, names), matrix(names, **entries)
     asks = Formula(lambda arm, q: take(make(*q), *q), shape=shape, symbols=names)
     told = retold(lambda q: make(*q), lambda arm, q: take(arm, *q), ((0.3, 0.4, 0.5, 0.6),))
-    return Part(part, title, points, asks, section=section, traps=[*traps, *told])
+    arm = link(convention, CLASSIC)(*LINK.values())
+    return Part(part, title, points, asks, section=section, arm=arm, traps=[*traps, *told], kinematics=False)
 
 
 def function(part, title, points, convention, names, section):
     """The link matrix as a function."""
     make, take = link(convention, names), matrix(names)
     asks = Function(lambda arm, *p: take(make(*p), *p), calls=CALLS, signature=f"{part}({', '.join(names)})")
-    return Part(part, title, points, asks, section=section, traps=retold(make, take, CALLS[0]))
+    arm = link(convention, CLASSIC)(*LINK.values())
+    return Part(
+        part, title, points, asks, section=section, arm=arm, traps=retold(make, take, CALLS[0]), kinematics=False
+    )
 
 
 def measured(part, title, names, tolerance, traps):
     """Two parameters of LINK, read off its matrix."""
     asks = Numbers(lambda arm, _: [LINK[name] for name in names], shape=(2,), at=(), tolerance=tolerance)
     return Part(part, title, 2, asks, section="sec-classic-measure", traps=traps)
-
-
-def number(part, title, points, right, section, traps, tolerance=1e-3):
-    """One number, with the wrong ones that a slip leads to."""
-    traps = [Trap(says, lambda arm, _, wrong=wrong: wrong) for wrong, says in traps]
-    asks = Numbers(lambda arm, _: right, shape=(), at=(), tolerance=tolerance)
-    return Part(part, title, points, asks, section=section, traps=traps)
 
 
 def conditions(part, title, right, because, section="sec-classic-check"):
@@ -76,7 +74,7 @@ def conditions(part, title, right, because, section="sec-classic-check"):
         options[option] = (
             f"{unjust[0]} holds here: test it again." if unjust else "not all that fails is named: test both."
         )
-    return Part(part, title, 1, Choice(options | {right: because}, right), section=section)
+    return choice(part, title, right, options | {right: because}, section)
 
 
 # The 24 orders
@@ -104,10 +102,6 @@ def ones(holds):
 
 def both(A):
     return dh1(A) and dh2(A)
-
-
-def quantity(value):
-    return lambda arm, _: value
 
 
 def modified_both(A):
@@ -168,26 +162,26 @@ EXERCISE = Exercise(
             [
                 Trap(
                     "These are degrees; radians are asked for.",
-                    quantity(np.rad2deg([LINK["theta"], LINK["alpha"]])),
+                    constant(np.rad2deg([LINK["theta"], LINK["alpha"]])),
                     "degrees",
                 ),
-                Trap("The two angles are exchanged: θ first, then α.", quantity([LINK["alpha"], LINK["theta"]])),
+                Trap("The two angles are exchanged: θ first, then α.", constant([LINK["alpha"], LINK["theta"]])),
                 Trap(
                     "θ lies in the wrong quadrant: arctan of a quotient cannot tell, arctan2(sine, cosine) can.",
-                    quantity([LINK["theta"] + np.pi, LINK["alpha"]]),
+                    constant([LINK["theta"] + np.pi, LINK["alpha"]]),
                 ),
                 Trap(
                     "A cosine alone does not tell the sign of an angle: take its sine too, with arctan2.",
-                    quantity([-LINK["theta"], LINK["alpha"]]),
+                    constant([-LINK["theta"], LINK["alpha"]]),
                 ),
                 Trap(
                     "A sine alone does not tell an angle: take the cosine too, with arctan2.",
-                    quantity([-np.pi - LINK["theta"], LINK["alpha"]]),
+                    constant([-np.pi - LINK["theta"], LINK["alpha"]]),
                 ),
                 Trap(
-                    "α has the wrong sign: its sine stands in row 3.", quantity([LINK["theta"], -LINK["alpha"]]), "sign"
+                    "α has the wrong sign: its sine stands in row 3.", constant([LINK["theta"], -LINK["alpha"]]), "sign"
                 ),
-                Trap("Both angles have the wrong sign.", quantity([-LINK["theta"], -LINK["alpha"]])),
+                Trap("Both angles have the wrong sign.", constant([-LINK["theta"], -LINK["alpha"]])),
             ],
         ),
         measured(
@@ -198,25 +192,25 @@ EXERCISE = Exercise(
             [
                 Trap(
                     "The two lengths are exchanged: d goes along z, a along x.",
-                    quantity([LINK["a"], LINK["d"]]),
+                    constant([LINK["a"], LINK["d"]]),
                     "a_and_d",
                 ),
                 Trap(
                     "a has the wrong sign: the position is (a cos θ, a sin θ, d), with the θ of the rotation.",
-                    quantity([LINK["d"], -LINK["a"]]),
+                    constant([LINK["d"], -LINK["a"]]),
                     "sign",
                 ),
                 Trap(
                     "This a is the x coordinate of the origin; a is measured along the new x.",
-                    quantity([LINK["d"], LINK["a"] * np.cos(LINK["theta"])]),
+                    constant([LINK["d"], LINK["a"] * np.cos(LINK["theta"])]),
                 ),
                 Trap(
                     "This a is the y coordinate of the origin; a is measured along the new x.",
-                    quantity([LINK["d"], LINK["a"] * np.sin(LINK["theta"])]),
+                    constant([LINK["d"], LINK["a"] * np.sin(LINK["theta"])]),
                 ),
                 Trap(
                     "This a is the distance of the origins; the part of it along z is d.",
-                    quantity([LINK["d"], np.hypot(LINK["a"], LINK["d"])]),
+                    constant([LINK["d"], np.hypot(LINK["a"], LINK["d"])]),
                 ),
             ],
         ),
@@ -238,11 +232,10 @@ EXERCISE = Exercise(
         number(
             "tilt",
             "By how much DH1 fails",
-            1,
             np.rad2deg(0.3),
             "sec-classic-dh1",
             [
-                (0.3, "This is in radians; degrees are asked for."),
+                (0.3, "This is in radians; degrees are asked for.", "degrees"),
                 (np.sin(0.3), "This is the entry r31, the sine of the angle; asked for is the angle, in degrees."),
                 (90 + np.rad2deg(0.3), "This is the angle between x1 and z0; asked for is by how much it is off 90°."),
                 (90 - np.rad2deg(0.3), "This is the angle between x1 and z0; asked for is by how much it is off 90°."),
@@ -252,7 +245,6 @@ EXERCISE = Exercise(
         number(
             "miss",
             "By how much DH2 fails",
-            1,
             35.0,
             "sec-classic-dh2",
             [
@@ -273,32 +265,31 @@ EXERCISE = Exercise(
             "obeys",
             "Which of the 24 orders",
             3,
-            Numbers(quantity(ones(both)), shape=(24,), at=()),
+            Numbers(constant(ones(both)), shape=(24,), at=()),
             section="sec-classic-orders",
             traps=[
-                Trap("Here DH1 alone is tested; DH2 has to hold too.", quantity(ones(dh1))),
-                Trap("Here DH2 alone is tested; DH1 has to hold too.", quantity(ones(dh2))),
-                Trap("One condition is enough here; both have to hold.", quantity(ones(lambda A: dh1(A) or dh2(A)))),
-                Trap("Here 1 and 0 are exchanged: 1 stands for an order that obeys both.", quantity(1 - ones(both))),
+                Trap("Here DH1 alone is tested; DH2 has to hold too.", constant(ones(dh1))),
+                Trap("Here DH2 alone is tested; DH1 has to hold too.", constant(ones(dh2))),
+                Trap("One condition is enough here; both have to hold.", constant(ones(lambda A: dh1(A) or dh2(A)))),
+                Trap("Here 1 and 0 are exchanged: 1 stands for an order that obeys both.", constant(1 - ones(both))),
                 Trap(
                     "These are the orders that obey the conditions of the modified convention.",
-                    quantity(ones(modified_both)),
+                    constant(ones(modified_both)),
                     "convention",
                 ),
                 Trap(
                     "Only one order is found, and some steps may change places without changing the product.",
-                    quantity(np.array([float(order == ("Rz", "Tz", "Tx", "Rx")) for order in ORDERS])),
+                    constant(np.array([float(order == ("Rz", "Tz", "Tx", "Rx")) for order in ORDERS])),
                 ),
                 Trap(
                     "One order is missing: Tx and Tz may change places too, where no turn stands between them.",
-                    quantity(np.array([float({*order[:2]} == {"Rz", "Tz"}) for order in ORDERS])),
+                    constant(np.array([float({*order[:2]} == {"Rz", "Tz"}) for order in ORDERS])),
                 ),
             ],
         ),
         number(
             "products",
             "How many matrices",
-            1,
             8,
             "sec-classic-orders",
             [

@@ -3,8 +3,9 @@
 import numpy as np
 
 from dhlib import Chain, robots
+from dhlib.grading.asking import EXACT, METRES, link_function, pose
 from dhlib.grading.exercise import Exercise, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, Table
+from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 
 ARM = robots.pa10_6c("classic", lengths="A")
 b, l1, l2, f = (robots.pa10_7c(lengths="A").joints[k].d for k in (0, 2, 4, 6))
@@ -15,17 +16,6 @@ QUARTERS = np.deg2rad([90, 90, -90, 90, 90, 180])
 #: Where the arm of the last part stood, as the page says, and the set of lengths it has, which the page does not say.
 CALIBRATED = np.deg2rad([20, 35, 60, 0, -45, 0])
 ITS_SET = "B"
-CALLS = [
-    (i, tuple(q)) for i, q in zip((1, 2, 3, 4, 5, 6) * 2, np.random.default_rng(7).uniform(-3, 3, (12, 6)), strict=True)
-]
-
-#: The page asks for three decimals, of metres too.
-METRES = {"tolerance": 1e-3, "length_tolerance": 1e-3}
-EXACT = {"length_tolerance": 1e-5}
-
-
-def pose(i, j):
-    return lambda arm, q: arm.T(i, j, q)
 
 
 def wrist(lean, bend, foot=b):
@@ -61,7 +51,12 @@ EXERCISE = Exercise(
         Part("modified_table", "The modified table", 3, Table("modified", free=()), section="sec-both-columns"),
         *(
             Part(
-                f"A{i}", f"A{i} in symbols", 1, Formula(pose(i - 1, i), symbols=SYMBOLS, **EXACT), section="sec-pa10-6c"
+                f"A{i}",
+                f"A{i} in symbols",
+                1,
+                Formula(pose(i - 1, i), symbols=SYMBOLS, **EXACT),
+                section="sec-pa10-6c",
+                kinematics=False,
             )
             for i in (2, 3)
         ),
@@ -69,8 +64,9 @@ EXERCISE = Exercise(
             "link",
             "Any link, as a function",
             2,
-            Function(lambda arm, i, q: arm.A(i, q), calls=CALLS, signature="link(i, q)", length_tolerance=1e-5),
+            link_function(6, seed=7),
             section="sec-pa10-6c",
+            kinematics=False,
         ),
         Part(
             "wrist",
@@ -96,6 +92,7 @@ EXERCISE = Exercise(
                     wrist(lambda q: q[1], lambda q: q[1] + q[2], foot=0.0),
                 ),
             ],
+            kinematics=False,
         ),
         Part(
             "T6",
@@ -109,8 +106,16 @@ EXERCISE = Exercise(
                     struck_out,
                 )
             ],
+            kinematics=False,
         ),
-        Part("T6_quarter", "T6 at quarter turns", 1, Numbers(pose(0, 6), at=QUARTERS, **METRES), section="sec-pa10-6c"),
+        Part(
+            "T6_quarter",
+            "T6 at quarter turns",
+            1,
+            Numbers(pose(0, 6), at=QUARTERS, **METRES),
+            section="sec-pa10-6c",
+            kinematics=False,
+        ),
         Part(
             "upper_arm",
             "Where the upper arm went",

@@ -3,8 +3,9 @@
 import numpy as np
 
 from dhlib import robots
+from dhlib.grading.asking import EXACT, METRES, constant, link_function, pose
 from dhlib.grading.exercise import Exercise, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, Table
+from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 
 ARM = robots.pa10_7c("classic", lengths="A")
 b, l1, l2, f = (ARM.joints[k].d for k in (0, 2, 4, 6))
@@ -12,19 +13,11 @@ b, l1, l2, f = (ARM.joints[k].d for k in (0, 2, 4, 6))
 SYMBOLS = [f"theta{i}" for i in range(1, 8)]
 JOINTS = np.deg2rad([30, 40, -50, 70, 20, 60, -80])
 QUARTERS = np.deg2rad([90, 90, 90, -90, 0, 90, 180])
-CALLS = [(i, tuple(q)) for i, q in zip(range(1, 8), np.random.default_rng(8).uniform(-3, 3, (7, 7)), strict=True)]
 #: The pose whose elbows are asked for, as the page gives it, comes from these joints; the page does not say so.
 HIDDEN = np.deg2rad([25, 40, 30, 75, -20, 50, 10])
 GIVEN = np.round(ARM.fk(HIDDEN), 6)
 
-#: The page asks for three decimals, of metres too.
-METRES = {"tolerance": 1e-3, "length_tolerance": 1e-3}
-EXACT = {"length_tolerance": 1e-5}
 S = np.array([0, 0, b])
-
-
-def pose(i, j):
-    return lambda arm, q: arm.T(i, j, q)
 
 
 def wrist(flange=f, column=2):
@@ -47,11 +40,6 @@ def highest(sign=1):
     return S + along * w + sign * radius * up / np.linalg.norm(up)
 
 
-def always(number):
-    """A quantity that asks nothing of the arm, since the page gives the pose."""
-    return lambda arm, *probe: number
-
-
 EXERCISE = Exercise(
     name="pa10_7c",
     title="The PA10-7C",
@@ -70,16 +58,25 @@ EXERCISE = Exercise(
             "link",
             "Any link, as a function",
             2,
-            Function(lambda arm, i, q: arm.A(i, q), calls=CALLS, signature="link(i, q)", length_tolerance=1e-5),
+            link_function(7, seed=8, rounds=1),
             section="sec-pa10-product",
+            kinematics=False,
         ),
-        Part("T7", "T7 in numbers", 2, Numbers(pose(0, 7), at=JOINTS, **METRES), section="sec-pa10-product"),
+        Part(
+            "T7",
+            "T7 in numbers",
+            2,
+            Numbers(pose(0, 7), at=JOINTS, **METRES),
+            section="sec-pa10-product",
+            kinematics=False,
+        ),
         Part(
             "T7_quarter",
             "T7 at quarter turns",
             1,
             Numbers(pose(0, 7), at=QUARTERS, **METRES),
             section="sec-pa10-product",
+            kinematics=False,
         ),
         Part(
             "T04",
@@ -87,6 +84,7 @@ EXERCISE = Exercise(
             2,
             Formula(pose(0, 4), symbols=SYMBOLS, **EXACT),
             section="sec-pa10-product",
+            kinematics=False,
         ),
         Part(
             "upper_arm",
@@ -106,44 +104,47 @@ EXERCISE = Exercise(
             "W",
             "The wrist of a given hand",
             1,
-            Numbers(always(wrist()), shape=(3,), at=HIDDEN, tolerance=1e-3),
+            Numbers(constant(wrist()), shape=(3,), at=HIDDEN, tolerance=1e-3),
             section="sec-pa10-redundancy",
             traps=[
-                Trap("The wrist lies behind the flange, against the approach vector a.", always(wrist(-f))),
-                Trap("The way back is along a, the third column, and not along n.", always(wrist(column=0))),
-                Trap("The way back is along a, the third column, and not along o.", always(wrist(column=1))),
-                Trap("This is the position of the flange; the wrist lies f behind it.", always(wrist(0.0))),
+                Trap("The wrist lies behind the flange, against the approach vector a.", constant(wrist(-f))),
+                Trap("The way back is along a, the third column, and not along n.", constant(wrist(column=0))),
+                Trap("The way back is along a, the third column, and not along o.", constant(wrist(column=1))),
+                Trap("This is the position of the flange; the wrist lies f behind it.", constant(wrist(0.0))),
             ],
         ),
         Part(
             "radius",
             "The elbow circle",
             2,
-            Numbers(always(circle()[1]), shape=(), at=HIDDEN, tolerance=1e-3),
+            Numbers(constant(circle()[1]), shape=(), at=HIDDEN, tolerance=1e-3),
             section="sec-pa10-redundancy",
             traps=[
-                Trap("This is how far the plane of the circle is from the shoulder.", always(circle()[0])),
-                Trap("This is the diameter; the radius is asked for.", always(2 * circle()[1])),
+                Trap("This is how far the plane of the circle is from the shoulder.", constant(circle()[0])),
+                Trap("This is the diameter; the radius is asked for.", constant(2 * circle()[1])),
                 Trap(
                     "This is how far the plane of the circle is from the wrist.",
-                    always(circle(upper=l2, fore=l1)[0]),
+                    constant(circle(upper=l2, fore=l1)[0]),
                 ),
                 Trap(
-                    "The triangle stands on the shoulder, which is b above the foot.", always(circle(shoulder=0 * S)[1])
+                    "The triangle stands on the shoulder, which is b above the foot.",
+                    constant(circle(shoulder=0 * S)[1]),
                 ),
-                Trap("The triangle ends at the wrist, and not at the flange.", always(circle(centre=GIVEN[:3, 3])[1])),
+                Trap(
+                    "The triangle ends at the wrist, and not at the flange.", constant(circle(centre=GIVEN[:3, 3])[1])
+                ),
             ],
         ),
         Part(
             "E",
             "The highest elbow",
             2,
-            Numbers(always(highest()), shape=(3,), at=HIDDEN, tolerance=1e-3),
+            Numbers(constant(highest()), shape=(3,), at=HIDDEN, tolerance=1e-3),
             section="sec-pa10-redundancy",
             traps=[
-                Trap("This is the lowest elbow on the circle.", always(highest(-1))),
-                Trap("This is the centre of the circle; the elbow is one radius away from it.", always(highest(0))),
-                Trap("The circle is found from the shoulder: its height b is missing.", always(highest() - S)),
+                Trap("This is the lowest elbow on the circle.", constant(highest(-1))),
+                Trap("This is the centre of the circle; the elbow is one radius away from it.", constant(highest(0))),
+                Trap("The circle is found from the shoulder: its height b is missing.", constant(highest() - S)),
             ],
         ),
         Part(

@@ -3,8 +3,9 @@
 import numpy as np
 
 from dhlib import Chain, Revolute, Tx
+from dhlib.grading.asking import choice, link_function, number
 from dhlib.grading.exercise import Exercise, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Function, Numbers, Table
+from dhlib.grading.forms import Formula, Numbers, Table
 
 LENGTHS = (260.0, 190.0, 110.0)
 
@@ -18,7 +19,6 @@ def arm(n, convention="classic"):
 TWO, THREE = arm(2), arm(3)
 TWO_MODIFIED, THREE_MODIFIED = arm(2, "modified"), arm(3, "modified")
 ANGLES = np.deg2rad([35, -70, 50])
-CALLS = [(i, tuple(q)) for i, q in zip((1, 2, 3) * 2, np.random.default_rng(6).uniform(-3, 3, (6, 3)), strict=True)]
 SYMBOLS = ["theta1", "theta2", "theta3"]
 #: Offsets of a draughtsman's table, as the page gives them.
 OFFSETS = (40.0, -25.0, 60.0)
@@ -29,17 +29,10 @@ def last(chain, q):
     return chain.T(0, chain.n, q)
 
 
-def number(part, title, right, section, traps):
-    """One number, with the wrong ones that a slip leads to."""
-    traps = [Trap(says, lambda _, q, wrong=wrong: wrong) for wrong, says in traps]
-    asks = Numbers(lambda _, q: right, shape=(), at=())
-    return Part(part, title, 1, asks, section=section, traps=traps)
-
-
-def choice(part, title, section, right, **options):
+def one_of(part, title, section, right, **options):
     """One of several; keys with _ stand for words."""
     options = {key.replace("_", " "): says for key, says in options.items()}
-    return Part(part, title, 1, Choice(options, right), section=section)
+    return choice(part, title, right, options, section)
 
 
 EXERCISE = Exercise(
@@ -48,9 +41,23 @@ EXERCISE = Exercise(
     arm=THREE,
     parts=[
         Part("table2", "2R: the classic table", 2, Table("classic"), section="sec-classic-parameters", arm=TWO),
-        Part("T2", "2R in numbers", 1, Numbers(last, at=ANGLES[:2]), section="sec-classic-product", arm=TWO),
         Part(
-            "T2_sym", "2R in symbols", 2, Formula(last, symbols=SYMBOLS[:2]), section="sec-quickshot-parallel", arm=TWO
+            "T2",
+            "2R in numbers",
+            1,
+            Numbers(last, at=ANGLES[:2]),
+            section="sec-classic-product",
+            arm=TWO,
+            kinematics=False,
+        ),
+        Part(
+            "T2_sym",
+            "2R in symbols",
+            2,
+            Formula(last, symbols=SYMBOLS[:2]),
+            section="sec-quickshot-parallel",
+            arm=TWO,
+            kinematics=False,
         ),
         Part(
             "table2_modified",
@@ -73,6 +80,7 @@ EXERCISE = Exercise(
                     lambda _, q: TWO.fk(q),
                 ),
             ],
+            kinematics=False,
         ),
         Part(
             "E2",
@@ -90,8 +98,15 @@ EXERCISE = Exercise(
             ],
         ),
         Part("table3", "3R: the classic table", 2, Table("classic"), section="sec-classic-parameters"),
-        Part("T3", "3R in numbers", 1, Numbers(last, at=ANGLES), section="sec-classic-product"),
-        Part("T3_sym", "3R in symbols", 2, Formula(last, symbols=SYMBOLS), section="sec-quickshot-parallel"),
+        Part("T3", "3R in numbers", 1, Numbers(last, at=ANGLES), section="sec-classic-product", kinematics=False),
+        Part(
+            "T3_sym",
+            "3R in symbols",
+            2,
+            Formula(last, symbols=SYMBOLS),
+            section="sec-quickshot-parallel",
+            kinematics=False,
+        ),
         Part(
             "table3_modified",
             "3R: the modified table",
@@ -104,9 +119,10 @@ EXERCISE = Exercise(
             "link3",
             "3R: any modified link, as a function",
             2,
-            Function(lambda chain, i, q: chain.A(i, q), calls=CALLS, signature="link3(i, q)"),
+            link_function(3, seed=6, length_tolerance=1e-3, name="link3"),
             section="sec-modified-product",
             arm=THREE_MODIFIED,
+            kinematics=False,
         ),
         Part(
             "T3_with_tool",
@@ -124,8 +140,9 @@ EXERCISE = Exercise(
                 ),
                 Trap("The last link is there twice.", lambda _, q: last(THREE, q) @ Tx(LENGTHS[2])),
             ],
+            kinematics=False,
         ),
-        choice(
+        one_of(
             "stays",
             "Which origin stays",
             "sec-modified-product",
@@ -162,7 +179,7 @@ EXERCISE = Exercise(
                 (float(np.linalg.norm(OFFSETS)), "These lengths are parallel, not at right angles: they add up."),
             ],
         ),
-        choice(
+        one_of(
             "unseen",
             "A mistake that passes",
             "sec-classic-trap-sign",
@@ -172,7 +189,7 @@ EXERCISE = Exercise(
             sense_of_joint_2="then the arm bends the other way: that shows unless θ2 is 0 or 180°.",
             links_exchanged="with the links exchanged the elbow is elsewhere: that shows unless the arm is straight.",
         ),
-        choice(
+        one_of(
             "exchanged",
             "Two links exchanged",
             "sec-quickshot-tables",
@@ -181,7 +198,7 @@ EXERCISE = Exercise(
             same_reach="both reach from 70 to 450 mm, but their axes are at different distances: two arms.",
             other_reach="the hand is furthest with the arm straight and nearest with it folded: work out both.",
         ),
-        choice(
+        one_of(
             "longer",
             "A longer last link",
             "sec-both-tool",
@@ -190,7 +207,7 @@ EXERCISE = Exercise(
             another_tool="the axes are where they were; what lies behind the last of them is for the tool to say.",
             mirror_image="nothing was reflected: no length has changed its sign.",
         ),
-        choice(
+        one_of(
             "trial",
             "Where to test",
             "sec-trap-zero-only",

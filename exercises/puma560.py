@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, inverse, robots
+from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, robots
+from dhlib.grading.asking import EXACT, METRES, link_function, pose, with_gripper
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, Table
+from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 
 bare = robots.puma560("modified", "craig")
 a2, d3 = bare.joints[2].a, bare.joints[2].d
@@ -19,18 +20,6 @@ JOINTS = np.deg2rad([30, -50, 70, 40, -60, 100])
 QUARTERS = np.deg2rad([90, -90, 180, 90, -90, 180])
 #: The pose of the last part, as the page gives it, comes from these joints; the page does not say so.
 HIDDEN = np.deg2rad([-35, 20, -75, 110, 50, -25])
-X_GIVEN = np.round(ARM.fk(HIDDEN), 6)
-CALLS = [
-    (i, tuple(q)) for i, q in zip((1, 2, 3, 4, 5, 6) * 2, np.random.default_rng(6).uniform(-3, 3, (12, 6)), strict=True)
-]
-
-#: The page asks for three decimals, of metres too.
-METRES = {"tolerance": 1e-3, "length_tolerance": 1e-3}
-EXACT = {"length_tolerance": 1e-5}
-
-
-def pose(i, j):
-    return lambda arm, q: arm.T(i, j, q)
 
 
 def letters(q):
@@ -109,6 +98,7 @@ EXERCISE = Exercise(
                 Formula(lambda arm, q, i=i: arm.A(i, q), symbols=SYMBOLS, **EXACT),
                 section="sec-puma560-links",
                 arm=bare,
+                kinematics=False,
             )
             for i in range(1, 5)
         ),
@@ -143,6 +133,7 @@ EXERCISE = Exercise(
                     lambda arm, q: Rx(-np.pi / 2) @ Rz(q[4]),
                 ),
             ],
+            kinematics=False,
         ),
         Part(
             "A6",
@@ -151,14 +142,16 @@ EXERCISE = Exercise(
             Formula(pose(5, 6), symbols=SYMBOLS, **EXACT),
             section="sec-puma560-links",
             arm=bare,
+            kinematics=False,
         ),
         Part(
             "link",
             "Any link, as a function",
             2,
-            Function(lambda arm, i, q: arm.A(i, q), calls=CALLS, signature="link(i, q)", length_tolerance=1e-5),
+            link_function(6, seed=6),
             section="sec-modified-product",
             arm=bare,
+            kinematics=False,
         ),
         Part(
             "T03",
@@ -168,6 +161,7 @@ EXERCISE = Exercise(
             section="sec-puma560-first-half",
             arm=bare,
             follows=Follows(["A1", "A2", "A3"], lambda A1, A2, A3: A1 @ A2 @ A3),
+            kinematics=False,
         ),
         Part(
             "T36",
@@ -177,6 +171,7 @@ EXERCISE = Exercise(
             section="sec-puma560-second-half",
             arm=bare,
             follows=Follows(["A4", "A5", "A6"], lambda A4, A5, A6: A4 @ A5 @ A6),
+            kinematics=False,
         ),
         Part(
             "T06",
@@ -186,6 +181,7 @@ EXERCISE = Exercise(
             section="sec-puma560-entries",
             arm=bare,
             follows=Follows(["T03", "T36"], lambda T03, T36: T03 @ T36),
+            kinematics=False,
         ),
         Part(
             "p",
@@ -213,6 +209,7 @@ EXERCISE = Exercise(
                     wrist(lambda q: (np.cos(q[1] + q[2]), np.sin(q[1] + q[2])), aside=-1),
                 ),
             ],
+            kinematics=False,
         ),
         Part(
             "fine",
@@ -236,6 +233,7 @@ EXERCISE = Exercise(
             section="sec-puma560-entries",
             arm=bare,
             traps=n_traps(0),
+            kinematics=False,
         ),
         Part(
             "n_y",
@@ -245,6 +243,7 @@ EXERCISE = Exercise(
             section="sec-puma560-entries",
             arm=bare,
             traps=n_traps(1),
+            kinematics=False,
         ),
         Part(
             "classic_table",
@@ -284,38 +283,22 @@ EXERCISE = Exercise(
             ),
             section="sec-puma560-corke",
         ),
-        Part("T6", "T6 in numbers", 2, Numbers(pose(0, 6), at=JOINTS, **METRES), section="sec-puma560-product"),
+        Part(
+            "T6",
+            "T6 in numbers",
+            2,
+            Numbers(pose(0, 6), at=JOINTS, **METRES),
+            section="sec-puma560-product",
+            kinematics=False,
+        ),
         Part(
             "T6_quarter",
             "T6 at quarter turns",
             1,
             Numbers(pose(0, 6), at=QUARTERS, **METRES),
             section="sec-puma560-poses",
+            kinematics=False,
         ),
-        Part(
-            "X",
-            "With a gripper",
-            2,
-            Numbers(lambda arm, q: arm.fk(q), at=JOINTS, **METRES),
-            section="sec-base-and-tool",
-            follows=Follows(["T6"], lambda T6: Z @ T6 @ E),
-        ),
-        Part(
-            "T6_back",
-            "Back from X",
-            2,
-            Numbers(lambda arm, q: inverse(arm.base) @ X_GIVEN @ inverse(arm.tool), at=HIDDEN, **METRES),
-            section="sec-base-and-tool",
-            traps=[
-                Trap(
-                    "Z and E are transposed here; the inverse of a pose is more than that, since p is turned too.",
-                    lambda arm, q: arm.base.T @ X_GIVEN @ arm.tool.T,
-                ),
-                Trap(
-                    "The two inverses have changed places: Z⁻¹ stands on the left, E⁻¹ on the right.",
-                    lambda arm, q: inverse(arm.tool) @ X_GIVEN @ inverse(arm.base),
-                ),
-            ],
-        ),
+        *with_gripper(ARM, "T6", ("With a gripper", "Back from X"), JOINTS, HIDDEN, **METRES),
     ],
 )

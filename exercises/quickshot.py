@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, inverse, robots
+from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, robots
+from dhlib.grading.asking import link_function, pose, with_gripper
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, Table
+from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 
 bare = robots.quickshot()
 #: Z and E as the page gives them.
@@ -17,20 +18,10 @@ JOINTS = np.deg2rad([30, -50, 70, 20])
 QUARTERS = np.deg2rad([90, -90, 180, -90])
 #: The pose of the last part, as the page gives it, comes from these joints; the page does not say so.
 HIDDEN = np.deg2rad([40, 25, -65, 110])
-X_GIVEN = np.round(ARM.fk(HIDDEN), 6)
-CALLS = [(i, tuple(q)) for i, q in zip((1, 2, 3, 4) * 2, np.random.default_rng(4).uniform(-3, 3, (8, 4)), strict=True)]
 
 LINKS = ("A1", "A2", "A3", "A4")
 PRODUCT = Follows(LINKS, lambda A1, A2, A3, A4: A1 @ A2 @ A3 @ A4)
 FORMULAS = Follows([f"{link}_sym" for link in LINKS], lambda A1, A2, A3, A4: A1 @ A2 @ A3 @ A4)
-
-
-def link_matrix(i):
-    return lambda arm, q: arm.A(i, q)
-
-
-def product(arm, q):
-    return arm.T(0, 4, q)
 
 
 def slides_entry(arm, q):
@@ -47,7 +38,14 @@ EXERCISE = Exercise(
         Part("frames", "Place the frames", 3, Frames("classic", count=5), section="sec-quickshot-frames", arm=bare),
         Part("table", "Write the table", 4, Table("classic"), section="sec-quickshot-table", arm=bare),
         *(
-            Part(link, f"{link} in numbers", 1, Numbers(link_matrix(i), at=JOINTS), section="sec-quickshot-links")
+            Part(
+                link,
+                f"{link} in numbers",
+                1,
+                Numbers(pose(i - 1, i), at=JOINTS),
+                section="sec-quickshot-links",
+                kinematics=False,
+            )
             for i, link in enumerate(LINKS, 1)
         ),
         *(
@@ -55,8 +53,9 @@ EXERCISE = Exercise(
                 f"{link}_sym",
                 f"{link} in symbols",
                 1,
-                Formula(link_matrix(i), symbols=SYMBOLS),
+                Formula(pose(i - 1, i), symbols=SYMBOLS),
                 section="sec-quickshot-links",
+                kinematics=False,
             )
             for i, link in enumerate(LINKS, 1)
         ),
@@ -64,18 +63,35 @@ EXERCISE = Exercise(
             "link",
             "Any link, as a function",
             2,
-            Function(lambda arm, i, q: arm.A(i, q), calls=CALLS, signature="link(i, q)"),
+            link_function(4, seed=4, length_tolerance=1e-3),
             section="sec-classic-product",
+            kinematics=False,
         ),
-        Part("T4", "T4 in numbers", 2, Numbers(product, at=JOINTS), section="sec-quickshot-product", follows=PRODUCT),
-        Part("T4_quarter", "T4 at quarter turns", 1, Numbers(product, at=QUARTERS), section="sec-quickshot-product"),
+        Part(
+            "T4",
+            "T4 in numbers",
+            2,
+            Numbers(pose(0, 4), at=JOINTS),
+            section="sec-quickshot-product",
+            follows=PRODUCT,
+            kinematics=False,
+        ),
+        Part(
+            "T4_quarter",
+            "T4 at quarter turns",
+            1,
+            Numbers(pose(0, 4), at=QUARTERS),
+            section="sec-quickshot-product",
+            kinematics=False,
+        ),
         Part(
             "T4_sym",
             "T4 in symbols",
             3,
-            Formula(product, symbols=SYMBOLS),
+            Formula(pose(0, 4), symbols=SYMBOLS),
             section="sec-quickshot-product",
             follows=FORMULAS,
+            kinematics=False,
         ),
         Part(
             "slip",
@@ -111,27 +127,8 @@ EXERCISE = Exercise(
                     lambda arm, q: np.sin(q[0]) * np.cos(q[3]) * np.cos(q[1] - q[2]) + np.cos(q[0]) * np.sin(q[3]),
                 ),
             ],
+            kinematics=False,
         ),
-        Part(
-            "X",
-            "Base and tool",
-            2,
-            Numbers(lambda arm, q: arm.fk(q), at=JOINTS),
-            section="sec-base-and-tool",
-            follows=Follows(["T4"], lambda T4: Z @ T4 @ E),
-        ),
-        Part(
-            "T4_back",
-            "Back from X",
-            2,
-            Numbers(lambda arm, q: inverse(arm.base) @ X_GIVEN @ inverse(arm.tool), at=HIDDEN),
-            section="sec-base-and-tool",
-            traps=[
-                Trap(
-                    "Z and E are transposed here; the inverse of a pose is more than that, since p is turned too.",
-                    lambda arm, q: arm.base.T @ X_GIVEN @ arm.tool.T,
-                ),
-            ],
-        ),
+        *with_gripper(ARM, "T4", ("Base and tool", "Back from X"), JOINTS, HIDDEN),
     ],
 )

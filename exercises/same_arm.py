@@ -5,8 +5,9 @@ from itertools import product
 import numpy as np
 
 from dhlib import Chain, Tx, Ty, Tz, robots
+from dhlib.grading.asking import choice
 from dhlib.grading.exercise import Exercise, Part, Trap
-from dhlib.grading.forms import Choice, Function, Numbers, Table
+from dhlib.grading.forms import Function, Numbers, Table
 
 #: Tables as the page gives them: theta, d, a, alpha in metres and degrees.
 PLANAR = [[0, 0, 0.5, 0], [0, 0, 0.3, 0], [0, 0, 0.2, 0]]
@@ -82,7 +83,7 @@ def translation(part, title, points, rows, other, zeros, senses=1, *, section, t
 
 def kind_of(part, title, right, section, **because):
     """Which of three an arm is; the words say why, or what to look at."""
-    return Part(part, title, 1, Choice(because, right), section=section)
+    return choice(part, title, right, because, section)
 
 
 def hand(signs, letters=HAND):

@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, inverse, robots
-from dhlib.grading.exercise import Exercise, Follows, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, Table
+from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, robots
+from dhlib.grading.asking import EXACT, METRES, joint_values, link_function, pose, with_gripper
+from dhlib.grading.exercise import Exercise, Part, Trap
+from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 
 CLASSIC = robots.cobra600("classic")
 MODIFIED = robots.cobra600("modified")
@@ -14,27 +15,10 @@ E = Tx(0.04) @ Tz(0.12) @ Rx(np.pi / 6)
 ARM = Chain(CLASSIC.joints, "classic", base=Z, tool=E, name=CLASSIC.name)
 
 SYMBOLS = ["theta1", "theta2", "d3", "theta4"]
-
-
-def joints(theta1, theta2, d3, theta4):
-    """A joint vector from angles in degrees and the slide in metres."""
-    return (np.deg2rad(theta1), np.deg2rad(theta2), d3, np.deg2rad(theta4))
-
-
-JOINTS = joints(30, -70, 0.15, 40)
-QUARTERS = joints(90, -90, 0.2, 90)
+JOINTS = joint_values(CLASSIC.kinds, [30, -70, 0.15, 40])
+QUARTERS = joint_values(CLASSIC.kinds, [90, -90, 0.2, 90])
 #: The pose of the last part, as the page gives it, comes from these joints; the page does not say so.
-HIDDEN = joints(-25, 65, 0.08, 50)
-X_GIVEN = np.round(ARM.fk(HIDDEN), 6)
-CALLS = [(i, tuple(q)) for i, q in zip((1, 2, 3, 4) * 2, np.random.default_rng(2).uniform(-3, 3, (8, 4)), strict=True)]
-
-#: The page asks for three decimals, of metres too.
-METRES = {"tolerance": 1e-3, "length_tolerance": 1e-3}
-EXACT = {"length_tolerance": 1e-5}
-
-
-def pose(i, j):
-    return lambda arm, q: arm.T(i, j, q)
+HIDDEN = joint_values(CLASSIC.kinds, [-25, 65, 0.08, 50])
 
 
 def all_converted(arm, q):
@@ -68,6 +52,7 @@ EXERCISE = Exercise(
             Formula(pose(1, 2), symbols=SYMBOLS, **EXACT),
             section="sec-prismatic-scara",
             arm=CLASSIC,
+            kinematics=False,
         ),
         Part(
             "A3_modified",
@@ -76,14 +61,16 @@ EXERCISE = Exercise(
             Formula(pose(2, 3), symbols=SYMBOLS, **EXACT),
             section="sec-prismatic-row",
             arm=MODIFIED,
+            kinematics=False,
         ),
         Part(
             "link",
             "Any modified link, as a function",
             2,
-            Function(lambda arm, i, q: arm.A(i, q), calls=CALLS, signature="link(i, q)", length_tolerance=1e-5),
+            link_function(4, seed=2),
             section="sec-prismatic-row",
             arm=MODIFIED,
+            kinematics=False,
         ),
         Part(
             "T04",
@@ -92,6 +79,7 @@ EXERCISE = Exercise(
             Formula(pose(0, 4), symbols=SYMBOLS, **EXACT),
             section="sec-prismatic-scara",
             arm=CLASSIC,
+            kinematics=False,
         ),
         Part(
             "heading",
@@ -114,6 +102,7 @@ EXERCISE = Exercise(
                 Trap("The slide does not turn the hand.", lambda arm, q: q[0] + q[1] + q[2] - q[3], "joint_kind"),
                 Trap("Axis 4 turns the hand too.", heading(sign4=0)),
             ],
+            kinematics=False,
         ),
         Part(
             "T4",
@@ -129,6 +118,7 @@ EXERCISE = Exercise(
                     "degrees",
                 )
             ],
+            kinematics=False,
         ),
         Part(
             "T4_quarter",
@@ -137,6 +127,7 @@ EXERCISE = Exercise(
             Numbers(pose(0, 4), at=QUARTERS, **METRES),
             section="sec-prismatic-scara",
             arm=CLASSIC,
+            kinematics=False,
         ),
         Part(
             "heights",
@@ -167,30 +158,6 @@ EXERCISE = Exercise(
             ),
             section="sec-prismatic-trap-revolute",
         ),
-        Part(
-            "X",
-            "Base and tool",
-            2,
-            Numbers(lambda arm, q: arm.fk(q), at=JOINTS, **METRES),
-            section="sec-base-and-tool",
-            follows=Follows(["T4"], lambda T4: Z @ T4 @ E),
-        ),
-        Part(
-            "T4_back",
-            "Back from X",
-            2,
-            Numbers(lambda arm, q: inverse(arm.base) @ X_GIVEN @ inverse(arm.tool), at=HIDDEN, **METRES),
-            section="sec-base-and-tool",
-            traps=[
-                Trap(
-                    "Z and E are transposed here; the inverse of a pose is more than that, since p is turned too.",
-                    lambda arm, q: arm.base.T @ X_GIVEN @ arm.tool.T,
-                ),
-                Trap(
-                    "The two inverses have changed places: Z⁻¹ stands on the left, E⁻¹ on the right.",
-                    lambda arm, q: inverse(arm.tool) @ X_GIVEN @ inverse(arm.base),
-                ),
-            ],
-        ),
+        *with_gripper(ARM, "T4", ("Base and tool", "Back from X"), JOINTS, HIDDEN, **METRES),
     ],
 )

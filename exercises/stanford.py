@@ -3,8 +3,9 @@
 import numpy as np
 
 from dhlib import robots
+from dhlib.grading.asking import EXACT, METRES, joint_values, link_function, pose
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, Table
+from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 from dhlib.grading.retelling import altered
 
 CLASSIC = robots.stanford("classic")
@@ -12,29 +13,9 @@ MODIFIED = robots.stanford("modified")
 d1, d2 = CLASSIC.joints[0].d, CLASSIC.joints[1].d
 
 SYMBOLS = ["theta1", "theta2", "d3", "theta4", "theta5", "theta6"]
-
-
-def joints(theta1, theta2, d3, theta4, theta5, theta6):
-    """A joint vector from angles in degrees and the slide in metres."""
-    q = np.deg2rad([theta1, theta2, 0, theta4, theta5, theta6])
-    q[2] = d3
-    return tuple(q)
-
-
-JOINTS = joints(30, 60, 0.5, 40, -50, 70)
-QUARTERS = joints(90, 90, 0.5, 90, -90, 180)
+JOINTS = joint_values(CLASSIC.kinds, [30, 60, 0.5, 40, -50, 70])
+QUARTERS = joint_values(CLASSIC.kinds, [90, 90, 0.5, 90, -90, 180])
 STEP = 0.1
-CALLS = [
-    (i, tuple(q)) for i, q in zip((1, 2, 3, 4, 5, 6) * 2, np.random.default_rng(3).uniform(-3, 3, (12, 6)), strict=True)
-]
-
-#: The page asks for three decimals, of metres too.
-METRES = {"tolerance": 1e-3, "length_tolerance": 1e-3}
-EXACT = {"length_tolerance": 1e-5}
-
-
-def pose(i, j):
-    return lambda arm, q: arm.T(i, j, q)
 
 
 def all_converted(arm, q):
@@ -115,6 +96,7 @@ EXERCISE = Exercise(
             Formula(pose(2, 3), symbols=SYMBOLS, **EXACT),
             section="sec-prismatic-row",
             traps=fixed_angle(2, 3),
+            kinematics=False,
         ),
         Part(
             "A3_modified",
@@ -123,13 +105,15 @@ EXERCISE = Exercise(
             Formula(pose(2, 3), symbols=SYMBOLS, **EXACT),
             section="sec-prismatic-row",
             arm=MODIFIED,
+            kinematics=False,
         ),
         Part(
             "link",
             "Any link, as a function",
             2,
-            Function(lambda arm, i, q: arm.A(i, q), calls=CALLS, signature="link(i, q)", length_tolerance=1e-5),
+            link_function(6, seed=3),
             section="sec-prismatic-row",
+            kinematics=False,
         ),
         Part(
             "T03",
@@ -138,6 +122,7 @@ EXERCISE = Exercise(
             Formula(pose(0, 3), symbols=SYMBOLS, **EXACT),
             traps=fixed_angle(0, 3),
             section="sec-prismatic-stanford",
+            kinematics=False,
         ),
         Part(
             "wrist",
@@ -155,6 +140,7 @@ EXERCISE = Exercise(
                 Trap("The height of the shoulder above the floor is missing.", wrist(foot=0.0)),
                 Trap("The boom is aside of axis 1 by d2, which is missing.", wrist(0)),
             ],
+            kinematics=False,
         ),
         Part(
             "T6",
@@ -170,6 +156,7 @@ EXERCISE = Exercise(
                 ),
                 *fixed_angle(0, 6),
             ],
+            kinematics=False,
         ),
         Part(
             "T6_quarter",
@@ -177,6 +164,7 @@ EXERCISE = Exercise(
             1,
             Numbers(pose(0, 6), at=QUARTERS, **METRES),
             section="sec-prismatic-stanford",
+            kinematics=False,
         ),
         Part(
             "push",
@@ -198,6 +186,7 @@ EXERCISE = Exercise(
                     lambda arm, q: arm.T(0, 6, [*q[:2], q[2] + STEP, *q[3:]])[:3, 3],
                 ),
             ],
+            kinematics=False,
         ),
         Part(
             "shoulder",

@@ -3,6 +3,7 @@
 import numpy as np
 
 from dhlib import Chain, Revolute, Rx, Ry, Rz, Tx, Ty, Tz, inverse
+from dhlib.grading.asking import choice, constant
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Function, Numbers
 
@@ -20,11 +21,6 @@ POSES = [
 ]
 
 
-def given(value):
-    """A quantity that depends on no arm and no joint angles."""
-    return lambda arm, *probe: value
-
-
 def atomic(name, step, symbol, others):
     """One of the four atomic transforms; the traps are the steps about or along other axes."""
     traps = [
@@ -37,7 +33,7 @@ def atomic(name, step, symbol, others):
         says = "It slides backwards: a positive length goes along the axis."
         traps.append(Trap(says, lambda arm, q: step(-q[0]), "transpose"))
     asks = Formula(lambda arm, q: step(q[0]), symbols=[symbol])
-    return Part(f"{name}_sym", f"{name} in symbols", 1, asks, section="sec-atomic", traps=traps)
+    return Part(f"{name}_sym", f"{name} in symbols", 1, asks, section="sec-atomic", traps=traps, kinematics=False)
 
 
 def product(part, title, points, *steps):
@@ -48,16 +44,18 @@ def product(part, title, points, *steps):
         return np.linalg.multi_dot(matrices[::-1] if reverse else matrices)
 
     traps = [
-        Trap("The factors of {part} stand in reverse order.", given(at(TURN, reverse=True)), "reverse"),
-        Trap("np.cos and np.sin take radians: 40° is np.deg2rad(40).", given(at(np.rad2deg(TURN))), "degrees"),
-        Trap("It turns the wrong way: seen from the tip of z, positive is anticlockwise.", given(at(-TURN)), "sense"),
+        Trap("The factors of {part} stand in reverse order.", constant(at(TURN, reverse=True)), "reverse"),
+        Trap("np.cos and np.sin take radians: 40° is np.deg2rad(40).", constant(at(np.rad2deg(TURN))), "degrees"),
+        Trap(
+            "It turns the wrong way: seen from the tip of z, positive is anticlockwise.", constant(at(-TURN)), "sense"
+        ),
     ]
-    return Part(part, title, points, Numbers(given(at(TURN)), at=()), section="sec-composition", traps=traps)
+    return Part(part, title, points, Numbers(constant(at(TURN)), at=()), section="sec-composition", traps=traps)
 
 
 def vector(part, title, value, section, traps, tolerance=1e-3):
-    asks = Numbers(given(value), shape=(3,), at=(), tolerance=tolerance)
-    return Part(part, title, 1, asks, section=section, traps=[Trap(says, given(wrong)) for says, wrong in traps])
+    asks = Numbers(constant(value), shape=(3,), at=(), tolerance=tolerance)
+    return Part(part, title, 1, asks, section=section, traps=[Trap(says, constant(wrong)) for says, wrong in traps])
 
 
 def read_off(part, title, column, tolerance=1e-3):
@@ -112,10 +110,10 @@ def law(k, right, because):
         "right angles": "n, o and a are at right angles: each product of two columns is 0.",
         "left-handed": "its determinant is positive, and that of left-handed axes is negative.",
     }
-    return Part(f"law_{k}", f"Matrix {k}", 1, Choice(options | {right: because}, right), section="sec-pose")
+    return choice(f"law_{k}", f"Matrix {k}", right, options | {right: because}, "sec-pose")
 
 
-in_hand = Numbers(given(inverse(HAND) @ CAMERA @ CUBE), at=())
+in_hand = Numbers(constant(inverse(HAND) @ CAMERA @ CUBE), at=())
 
 EXERCISE = Exercise(
     name="transforms",
@@ -182,9 +180,10 @@ EXERCISE = Exercise(
             "hand_back",
             "The room, seen from the hand",
             2,
-            Numbers(given(inverse(HAND)), at=()),
+            Numbers(constant(inverse(HAND)), at=()),
             section="sec-inverse",
             traps=half_inverses(lambda q: HAND),
+            kinematics=False,
         ),
         Part(
             "invert",
@@ -193,6 +192,7 @@ EXERCISE = Exercise(
             Function(lambda arm, T: inverse(T), calls=[(T,) for T in POSES], signature="invert(T)"),
             section="sec-inverse",
             traps=half_inverses(lambda T: T),
+            kinematics=False,
         ),
         Part(
             "cube_in_hand",
@@ -202,26 +202,30 @@ EXERCISE = Exercise(
             section="sec-chain-product",
             follows=Follows(["hand_back"], lambda back: back @ CAMERA @ CUBE),
             traps=[
-                Trap("This is the cube in the room; from there one more step leads to the hand.", given(CAMERA @ CUBE)),
+                Trap(
+                    "This is the cube in the room; from there one more step leads to the hand.", constant(CAMERA @ CUBE)
+                ),
                 Trap(
                     "The hand is taken the wrong way round: from the hand to the room is the inverse.",
-                    given(HAND @ CAMERA @ CUBE),
+                    constant(HAND @ CAMERA @ CUBE),
                 ),
-                Trap("The camera is taken the wrong way round.", given(inverse(HAND) @ inverse(CAMERA) @ CUBE)),
-                Trap("The cube is taken the wrong way round.", given(inverse(HAND) @ CAMERA @ inverse(CUBE))),
+                Trap("The camera is taken the wrong way round.", constant(inverse(HAND) @ inverse(CAMERA) @ CUBE)),
+                Trap("The cube is taken the wrong way round.", constant(inverse(HAND) @ CAMERA @ inverse(CUBE))),
                 Trap(
                     "The factors of {part} stand in reverse order: indices that meet cancel.",
-                    given(CUBE @ CAMERA @ inverse(HAND)),
+                    constant(CUBE @ CAMERA @ inverse(HAND)),
                     "reverse",
                 ),
                 Trap(
                     "The inverse of the hand stands on the wrong side: indices that meet cancel.",
-                    given(CAMERA @ CUBE @ inverse(HAND)),
+                    constant(CAMERA @ CUBE @ inverse(HAND)),
                 ),
-                Trap("The hand is transposed; the inverse of a pose is more than that.", given(HAND.T @ CAMERA @ CUBE)),
+                Trap(
+                    "The hand is transposed; the inverse of a pose is more than that.", constant(HAND.T @ CAMERA @ CUBE)
+                ),
                 Trap(
                     "{part} is multiplied entry by entry: the product of matrices is @.",
-                    given(inverse(HAND) * CAMERA * CUBE),
+                    constant(inverse(HAND) * CAMERA * CUBE),
                     "entrywise",
                 ),
             ],

@@ -11,9 +11,11 @@ from pathlib import Path
 import dhlib
 from dhlib.chain import Chain
 from dhlib.errors import DHError
-from dhlib.grading.forms import Form, Quantity
+from dhlib.grading.forms import Form, Frames, Quantity, Table
 
 NAME = re.compile(r"[a-z][a-z0-9_]*")
+#: What the statement says of the parts for which dhlib's kinematics is closed.
+OWN_WORK = "*Your own work:* where a course grades this page, `dhlib` is closed for {parts}."
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,9 @@ class Part:
         The arm in question; that of the exercise if left out.
     traps : sequence of Trap
     follows : Follows, optional
+    kinematics : bool
+        Whether dhlib's kinematics (arms, chains, link matrices, transforms) may be used to answer it. False where the
+        point is to build the thing oneself; the statement then says so, as `OWN_WORK` has it.
     """
 
     id: str
@@ -79,6 +84,7 @@ class Part:
     arm: Chain | None = None
     traps: Sequence[Trap] = ()
     follows: Follows | None = None
+    kinematics: bool = True
 
     @property
     def chain(self) -> Chain:
@@ -86,6 +92,13 @@ class Part:
         if self.arm is None:
             raise DHError(f"part {self.id} has no arm: give it one, or put it into an exercise that has.")
         return self.arm
+
+    @property
+    def convention(self) -> str:
+        """The convention that the part is about: that of the table or frames asked for, else that of its arm."""
+        if isinstance(self.asks, Table | Frames):
+            return self.asks.convention
+        return self.arm.convention if self.arm else "classic"
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ class Refused(Exception):
     """A reading is not what an honest reader of answers makes."""
 
 
-def mark(part: Part, reading: Any, earlier: Mapping[str, Earlier] | None = None) -> Mark:
+def mark(part: Part, reading: Any, earlier: Mapping[str, Earlier] | None = None, reveal: bool = True) -> Mark:
     """Judge a reading of one part.
 
     Parameters
@@ -52,6 +52,8 @@ def mark(part: Part, reading: Any, earlier: Mapping[str, Earlier] | None = None)
         What `answers.read_answer` made; anything else is refused in words.
     earlier : mapping of str to Earlier, optional
         Answers to earlier parts: what follows from a wrong one is not punished again.
+    reveal : bool
+        Whether the verdict on a table may state the number that is expected; not in an assigned edition.
 
     Returns
     -------
@@ -64,10 +66,10 @@ def mark(part: Part, reading: Any, earlier: Mapping[str, Earlier] | None = None)
     >>> print(mark(part, {"choice": "n_z"}))
     slip: not yet. n_z is right as printed: it is -S23 C4, written out.
     """
-    return judge(part, reading, earlier or {}).mark
+    return judge(part, reading, earlier or {}, reveal).mark
 
 
-def judge(part: Part, reading: Any, earlier: Mapping[str, Earlier]) -> Earlier:
+def judge(part: Part, reading: Any, earlier: Mapping[str, Earlier], reveal: bool = True) -> Earlier:
     """Judge a reading, and keep its values for the parts that follow from it."""
     if not isinstance(reading, dict):
         reading = {"fault": "refused"}
@@ -80,7 +82,7 @@ def judge(part: Part, reading: Any, earlier: Mapping[str, Earlier]) -> Earlier:
             case Choice():
                 return Earlier(_judge_choice(part, part.asks, reading), None)
             case Table():
-                return Earlier(judge_table(part, part.asks, _table(reading)), None)
+                return Earlier(judge_table(part, part.asks, _table(reading), reveal), None)
             case Frames():
                 (frames,) = _values(reading, 1, (part.asks.count, 4, 4))
                 return Earlier(judge_frames(part, part.asks, frames), None)
@@ -97,6 +99,8 @@ class Marker:
     Parameters
     ----------
     exercise : Exercise
+    reveal : bool
+        Whether the verdict on a table may state the number that is expected.
 
     Examples
     --------
@@ -105,14 +109,15 @@ class Marker:
     'Put your answer in place of the three dots.'
     """
 
-    def __init__(self, exercise: Exercise) -> None:
+    def __init__(self, exercise: Exercise, reveal: bool = True) -> None:
         self.exercise = exercise
+        self.reveal = reveal
         self._earlier: dict[str, Earlier] = {}
 
     def mark(self, part_id: str, reading: Any) -> Mark:
         """Mark one answer; raises DHError if there is no such part."""
         part = self.exercise.part(part_id)
-        judged = judge(part, reading, self._earlier)
+        judged = judge(part, reading, self._earlier, self.reveal)
         self._earlier[part.id] = judged
         return judged.mark
 

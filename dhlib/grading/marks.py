@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from dhlib.grading.exercise import Part
+from dhlib.grading.forms import Numbers
 from dhlib.grading.misconceptions import Misconception
 
 RIGHT, FOLLOWS, NEARLY, WRONG, OPEN, UNREADABLE = "right", "follows", "nearly", "wrong", "open", "unreadable"
@@ -19,6 +20,8 @@ HEADLINES = {
 }
 #: Which part of the points an answer earns that is off by a little more than the tolerance.
 COARSE = 0.5
+#: What is wrong about a single number that still was worked out, and not guessed.
+OF_DRESS = ("degrees", "unit")
 
 
 @dataclass(frozen=True)
@@ -65,12 +68,15 @@ def make_mark(
     part : Part
     verdict, message : str
     credit : float
-        Which part of the points is earned, where the answer does not pass; to the nearest quarter of a point.
+        Which part of the points is earned, where the answer does not pass; to the nearest quarter of a point. A
+        wrong single number earns nothing, unless it is right in another unit.
     known : Misconception, optional
         The one that fits.
     """
-    section = (known.section if known else "") or part.section
+    section = (known.where(part.convention) if known else "") or part.section
     passed = verdict in (RIGHT, FOLLOWS)
+    if isinstance(part.asks, Numbers) and part.asks.shape == () and (known is None or known.key not in OF_DRESS):
+        credit = 0.0  # a single number may have been a guess
     return Mark(
         part.id,
         part.points if passed else round(4 * part.points * credit) / 4,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import islice, pairwise, permutations
 from typing import Any
@@ -41,6 +41,8 @@ class Misconception:
         Label of the section of the book that sets it right.
     credit : float
         Which part of the points such an answer still earns.
+    modified : str
+        Label of the section for arms of the modified convention, where that is another one.
     """
 
     number: int
@@ -48,6 +50,11 @@ class Misconception:
     brief: str
     section: str
     credit: float = 0.25
+    modified: str = ""
+
+    def where(self, convention: str = "classic") -> str:
+        """Label of the section of the book for arms of a convention."""
+        return self.modified if convention == "modified" and self.modified else self.section
 
 
 @dataclass(frozen=True)
@@ -58,27 +65,35 @@ class Slip:
     says: str
 
 
+# fmt: off
 KNOWN = {
     known.key: known
     for known in (
-        Misconception(1, "convention", "the convention: classic or modified", "sec-modified-product", 0.5),
-        Misconception(2, "row", "the row in which a and α stand", "sec-classic-trap-row"),
-        Misconception(3, "offset", "the offset between q and θ", "sec-classic-variable", 0.5),
-        Misconception(4, "sense", "the sense in which a joint turns", "sec-classic-variable", 0.5),
-        Misconception(5, "parallel", "where d stands along parallel axes", "sec-quickshot-tables", 1.0),
-        Misconception(6, "a_and_d", "which length is a and which is d", "sec-classic-parameters"),
-        Misconception(7, "sign", "the sign of a or α", "sec-classic-trap-sign", 0.5),
+        Misconception(1, "convention", "the convention: classic or modified", "sec-both-trap-formula", 0.5,
+                      "sec-modified-trap-formula"),
+        Misconception(2, "row", "the row in which a and α stand", "sec-classic-trap-row",
+                      modified="sec-modified-trap-row"),
+        Misconception(3, "offset", "the offset between q and θ", "sec-classic-variable", 0.5,
+                      "sec-modified-parameters"),
+        Misconception(4, "sense", "the sense in which a joint turns", "sec-classic-variable", 0.5,
+                      "sec-modified-parameters"),
+        Misconception(5, "parallel", "where d stands along parallel axes", "sec-placing-parallel", 1.0),
+        Misconception(6, "a_and_d", "which length is a and which is d", "sec-classic-parameters",
+                      modified="sec-modified-parameters"),
+        Misconception(7, "sign", "the sign of a or α", "sec-classic-trap-sign", 0.5, "sec-modified-parameters"),
         Misconception(8, "ends", "base and tool, and on which side they stand", "sec-base-and-tool", 0.5),
         Misconception(9, "degrees", "degrees and radians", "sec-trap-degrees", 0.5),
-        Misconception(10, "unit", "the unit of length", "sec-classic-parameters", 0.75),
+        Misconception(10, "unit", "the unit of length", "sec-classic-parameters", 0.75, "sec-modified-parameters"),
         Misconception(11, "reverse", "the order of the product", "sec-trap-order"),
         Misconception(12, "transpose", "rows and columns, and which frame is seen from which", "sec-trap-rows", 0.5),
-        Misconception(13, "joint_kind", "which parameter the joint moves", "sec-classic-variable"),
-        Misconception(14, "steps", "the order of the four steps", "sec-classic-trap-order"),
+        Misconception(13, "joint_kind", "which parameter the joint moves", "sec-prismatic-row"),
+        Misconception(14, "steps", "the order of the four steps", "sec-classic-trap-order",
+                      modified="sec-modified-orders"),
         Misconception(15, "improper", "whether the matrix is a rotation at all", "sec-pose", 0.0),
         Misconception(16, "entrywise", "* and @", "sec-trap-order"),
     )
 }
+# fmt: on
 #: A wrong answer that one exercise knows of itself.
 TRAP = Misconception(0, "trap", "the task itself", "")
 
@@ -114,7 +129,7 @@ def _conventions(chain: Chain) -> Told:
     converted = chain.to_modified() if other == "modified" else chain.to_classic()
     yield (
         "convention",
-        f"Your {{part}} is right for the {other} convention; this chapter asks for the {asked} one.",
+        f"Your {{part}} is right for the {other} convention; this part asks for the {asked} one.",
         converted,
     )
     yield (
@@ -370,7 +385,7 @@ def name_one(fitting: list[Slip]) -> Slip | None:
     known = [slip.misconception for slip in slips]
     checks = "; or ".join(each.brief for each in known[:3])
     key = "+".join(each.key for each in known)
-    several = Misconception(0, key, checks, known[0].section, min(each.credit for each in known))
+    several = replace(known[0], number=0, key=key, brief=checks, credit=min(each.credit for each in known))
     return Slip(several, f"More than one slip leads to this very answer. Check {checks}.")
 
 
@@ -386,7 +401,7 @@ def told_frames(chain: Chain, convention: str) -> Iterator[tuple[Slip, FloatArra
         Slip(
             KNOWN["convention"],
             f"These are the frames of the {name} convention: there frame i stands on axis "
-            f"{'i' if name == 'modified' else 'i + 1'}. This chapter asks for the {convention} one.",
+            f"{'i' if name == 'modified' else 'i + 1'}. This part asks for the {convention} one.",
         ),
         other.frames(zero),
     )

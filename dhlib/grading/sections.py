@@ -37,13 +37,18 @@ CHAPTERS = {
     "The modified convention": {
         "sec-modified-check": "Both as a check",
         "sec-modified-slip": "A wrong factor on the slides",
+        "sec-modified-parameters": "Four parameters, and their indices",
         "sec-modified-product": "The general link matrix",
+        "sec-modified-orders": "The order of the four steps",
+        "sec-modified-trap-formula": "The classic formula on a modified table",
+        "sec-modified-trap-row": "Link columns off by one row",
     },
     "Both side by side": {
         "sec-both-columns": "The columns move one row",
         "sec-both-tool": "At the hand: into the tool",
         "sec-both-base": "At the base: into the base",
         "sec-both-frames": "What happens to the frames",
+        "sec-both-trap-formula": "A classic table in the modified formula",
         "sec-both-tell-parallel": "Look for the upper arm",
         "sec-both-tell-pose": "Ask for one known pose",
         "sec-both-tell-never": "Where no table can tell",

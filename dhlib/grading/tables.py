@@ -35,7 +35,7 @@ FACTORS = {1000.0: "a thousand times too small", 0.001: "a thousand times too la
            10.0: "ten times too small", 0.1: "ten times too large"}  # fmt: skip
 
 
-def judge_table(part: Part, asks: Table, table: Rows) -> Mark:
+def judge_table(part: Part, asks: Table, table: Rows, reveal: bool = True) -> Mark:
     """Judge rows that were validated as numbers and text.
 
     Parameters
@@ -44,6 +44,8 @@ def judge_table(part: Part, asks: Table, table: Rows) -> Mark:
     asks : Table
     table : mapping
         rows, columns (or None), convention (or ``""``), and base and tool where the answer brought them.
+    reveal : bool
+        Whether to state the number that is expected, where nothing better can be said.
     """
     reference = part.chain.to_classic() if asks.convention == "classic" else part.chain.to_modified()
     degrees = False
@@ -66,7 +68,7 @@ def judge_table(part: Part, asks: Table, table: Rows) -> Mark:
         return _with_degrees(part, answer, reference)
     if answer.convention != asks.convention:
         return _other_convention(part, asks, answer, reference)
-    return climb_down(part, asks, answer, reference)
+    return climb_down(part, asks, answer, reference, reveal)
 
 
 def read_chain(table: Rows, asks: Table, reference: Chain, degrees: bool = False) -> Chain:
@@ -127,7 +129,7 @@ def _reads(read: Callable[[str, str], Chain], convention: str) -> bool:
     return True
 
 
-def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain) -> Mark:
+def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain, reveal: bool = True) -> Mark:
     """Rung by rung, what the answer is to the reference."""
     if _same_pose(answer, reference):
         return make_mark(part, RIGHT)
@@ -136,7 +138,7 @@ def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain) -> Mark
     told_chains = [(slip, told) for slip, told in told_chains if not _is(reference, told)]
     slip = name_one([slip for slip, told in told_chains if _is(answer, told)])
     if verdict:
-        return _same_arm(part, asks, verdict, reference, slip)
+        return _same_arm(part, asks, verdict, reference, slip, reveal)
     if verdict.mirror:
         says = "This is the mirror image of the arm: the sign of an a, an α or a d is turned."
         known = slip.misconception if slip else KNOWN["sign"]
@@ -148,7 +150,9 @@ def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain) -> Mark
             return make_mark(part, NEARLY, says, known.credit, known)
     if slip:
         return make_mark(part, WRONG, slip.says, slip.misconception.credit, slip.misconception)
-    return make_mark(part, WRONG, _sentence(verdict.reason))
+    if reveal or verdict.finding == verdict.reason:
+        return make_mark(part, WRONG, _sentence(verdict.reason))
+    return make_mark(part, WRONG, _sentence(f"{verdict.finding}; by the task it is not"))
 
 
 def closest(asks: Table, answer: Chain, reference: Chain) -> Sameness:
@@ -167,7 +171,7 @@ def closest(asks: Table, answer: Chain, reference: Chain) -> Sameness:
     return verdict
 
 
-def _same_arm(part: Part, asks: Table, verdict: Sameness, reference: Chain, slip: Slip | None) -> Mark:
+def _same_arm(part: Part, asks: Table, verdict: Sameness, reference: Chain, slip: Slip | None, reveal: bool) -> Mark:
     """The same arm, with other ends, zeros or senses: right where the task leaves them free."""
     turned = [i for i, sign in enumerate(verdict.signs, 1) if sign < 0]
     shifted = [
@@ -179,7 +183,8 @@ def _same_arm(part: Part, asks: Table, verdict: Sameness, reference: Chain, slip
     if moved:
         distance = float(np.linalg.norm(ends[moved[0]][:3, 3]))
         far = distance > TOLERANCE * reference.reach
-        how = f"its origin is {distance:.4g} {reference.unit} away" if far else "it is turned"
+        away = f"{distance:.4g} {reference.unit} away" if reveal else "elsewhere"
+        how = f"its origin is {away}" if far else "it is turned"
         them = "it" if len(moved) == 1 else "them"
         says = f"with this table {' and '.join(moved)} would not be where the task puts {them}"
         says = f"{slip.says} The axes would fit, but {says}." if slip else f"The axes fit, but {says}: {how}."

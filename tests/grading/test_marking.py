@@ -11,6 +11,7 @@ import sympy as sp
 from dhlib import Chain, Revolute, Rz, robots
 from dhlib.errors import DHError
 from dhlib.grading.answers import read_answer
+from dhlib.grading.asking import number
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap, load_exercise
 from dhlib.grading.forms import Choice, Function, Numbers, Valued
 from dhlib.grading.marking import Marker, mark
@@ -307,3 +308,15 @@ def test_what_stands_for_the_same_is_as_right():
     assert judged(lambda x, y: [x - 2 * np.pi, 2 * np.pi - y]).message == "Joint 2 turns the wrong way."
     assert judged(lambda x, y: [x, y + 1e-3]).message == "These values do not lead where they should."
     assert judged(lambda x, y: [1e9, 1e9]).verdict == "wrong"
+
+
+def test_a_wrong_single_number_earns_nothing_unless_its_unit_alone_is_wrong():
+    """One of a few options is soon guessed; a whole matrix is not."""
+    told = [(0.3, "That is radians.", "degrees"), (3.0, "That is the other one.")]
+    single = number("x", "X", 17.19, "", told, points=2, tolerance=0.01)
+    single = Exercise("e", "E", robots.planar(2), [single]).parts[0]
+    earned = {value: mark(single, {"values": [value]}).points for value in (17.19, 0.3, 3.0, 17.25, 5.0)}
+    assert earned == {17.19: 2, 0.3: 1, 3.0: 0, 17.25: 0, 5.0: 0}
+    whole = Part("m", "M", 2, Numbers(lambda arm, q: arm.fk(q), at=(0.3, 0.5)), arm=robots.planar(2),
+                 traps=[Trap("That is the elbow.", lambda arm, q: arm.T(0, 1, q))])  # fmt: skip
+    assert mark(whole, {"values": [robots.planar(2).T(0, 1, [0.3, 0.5]).tolist()]}).points == 0.5

@@ -64,7 +64,7 @@ def test_a_misconception_of_one_part_is_named_exactly(judge, arm, solved, exerci
     q = solved["q"]
     other = Chain(arm.joints, "modified", unit="mm")
     cases = {
-        "convention": ("A1", arm.to_modified().A(1, q), "right for the modified convention; this chapter asks for"),
+        "convention": ("A1", arm.to_modified().A(1, q), "right for the modified convention; this part asks for"),
         "row": ("T4", _rolled(arm).T(0, 4, q), "one row too far"),
         "sense": ("A3", arm.A(3, -q), "joint 3 turns the wrong way"),
         "sign": ("A3", arm.A(3, q) * _sign_of_alpha(), "α_3 has the wrong sign"),
@@ -139,7 +139,7 @@ def test_wrong_tables_are_named(every):
 
 def test_every_sentence_points_into_the_book(every):
     labels = {label for sections in CHAPTERS.values() for label in sections}
-    assert {known.section for known in KNOWN.values()} <= labels
+    assert {known.where(of) for known in KNOWN.values() for of in ("classic", "modified")} <= labels
     assert {part.section for part in every.parts} <= labels
     keys = {trap.key for part in every.parts for trap in part.traps}
     assert keys <= {*KNOWN, "trap"}

@@ -186,3 +186,26 @@ def test_a_right_row_is_no_slip():
     got = mark(part, read_answer(part.asks.request(), arm))
     assert (got.verdict, got.misconception) == ("nearly", "ends")
     assert "frame 2 would not be where the task puts it" in got.message
+
+
+def test_the_number_that_is_expected_can_be_kept_back(exercise):
+    part = exercise.part("table")
+
+    def said(changes, reveal):
+        return mark(part, read_answer(part.asks.request(), with_cells(*changes)), reveal=reveal).message
+
+    longer, lower = [(2, "a", 150)], [(4, "d", 0)]
+    assert said(longer, True) == "Distance between axes 2 and 3 is 150, expected 160."
+    assert said(longer, False) == "Distance between axes 2 and 3 is 150; by the task it is not."
+    assert "its origin is 250 mm away" in said(lower, True)
+    assert "its origin is elsewhere" in said(lower, False)
+
+
+def test_a_hint_on_a_modified_table_points_to_its_own_chapter():
+    arm = robots.puma560("modified")
+    arm = Chain(arm.joints, "modified")
+    part = Part("t", "T", 4, Table("modified"), arm=arm)
+    links = [(j.a, j.alpha) for j in arm.joints]
+    rolled = [j.replace(a=a, alpha=alpha) for j, (a, alpha) in zip(arm.joints, [*links[1:], (0, 0)], strict=True)]
+    got = mark(part, read_answer(part.asks.request(), Chain(rolled, "modified")))
+    assert (got.misconception, got.section) == ("row", "sec-modified-trap-row")

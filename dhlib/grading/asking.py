@@ -1,0 +1,149 @@
+"""What exercises ask for again and again, with the wrong answers that it invites."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from dhlib.chain import Chain
+from dhlib.grading.exercise import Follows, Part, Trap
+from dhlib.grading.forms import Arm, Choice, Function, Numbers, Probe, Quantity
+from dhlib.scalars import FloatArray
+from dhlib.transforms import inverse
+
+#: Tolerances of numbers that the page asks for to three decimals, of metres too.
+METRES = {"tolerance": 1e-3, "length_tolerance": 1e-3}
+#: Tolerances of formulas, in metres.
+EXACT = {"length_tolerance": 1e-5}
+
+
+# Quantities
+
+
+def pose(i: int, j: int) -> Quantity:
+    """Frame j in frame i.
+
+    Examples
+    --------
+    >>> from dhlib import robots
+    >>> pose(0, 2)(robots.planar(2), [0, 0])[:3, 3]
+    array([2., 0., 0.])
+    """
+    return lambda arm, q: arm.T(i, j, q)
+
+
+def constant(value: Any) -> Quantity:
+    """A value that depends on no arm and no joint angles, since the page gives all it takes."""
+    return lambda arm, *probe: value
+
+
+def joint_values(kinds: str, values: Sequence[float]) -> tuple[float, ...]:
+    """A joint vector of angles in degrees and slides in the arm's unit.
+
+    Examples
+    --------
+    >>> joint_values("RP", [180, 0.5])
+    (3.141592653589793, 0.5)
+    """
+    return tuple(float(np.deg2rad(v) if kind == "R" else v) for kind, v in zip(kinds, values, strict=True))
+
+
+def link_calls(n: int, seed: int, rounds: int = 2) -> list[Probe]:
+    """Calls ``(i, q)`` of a function for any link: every link, at joint values without any pattern."""
+    q = np.random.default_rng(seed).uniform(-3, 3, (rounds * n, n))
+    return [(i, tuple(map(float, at))) for i, at in zip([*range(1, n + 1)] * rounds, q, strict=True)]
+
+
+def link_function(n: int, seed: int, rounds: int = 2, length_tolerance: float = 1e-5, name: str = "link") -> Function:
+    """Any link of an arm, as a function of its number and the joint vector."""
+    return Function(
+        lambda arm, i, q: arm.A(i, q),
+        calls=link_calls(n, seed, rounds),
+        signature=f"{name}(i, q)",
+        length_tolerance=length_tolerance,
+    )
+
+
+# Parts
+
+
+def choice(part: str, title: str, right: str, because: Mapping[str, str], section: str, points: float = 1) -> Part:
+    """One of several options; the words say why, or what to look at."""
+    return Part(part, title, points, Choice(because, right), section=section)
+
+
+def number(
+    part: str,
+    title: str,
+    right: float,
+    section: str,
+    traps: Sequence[tuple[float, str] | tuple[float, str, str]],
+    points: float = 1,
+    tolerance: float = 1e-3,
+) -> Part:
+    """One number, with the wrong ones that a slip leads to: each with its words, and its key if it is a known slip."""
+    told = [Trap(says, constant(wrong), *key) for wrong, says, *key in traps]
+    asks = Numbers(constant(right), shape=(), at=(), tolerance=tolerance)
+    return Part(part, title, points, asks, section=section, traps=told)
+
+
+def with_gripper(
+    arm: Chain,
+    of: str,
+    titles: tuple[str, str],
+    joints: Sequence[float],
+    hidden: Sequence[float],
+    tolerance: float = 1e-3,
+    length_tolerance: float = 0.1,
+) -> list[Part]:
+    """Two parts about X = Z T E: ``X`` at some joint values, and T from an X that was measured.
+
+    Parameters
+    ----------
+    arm : Chain
+        With base Z and tool E.
+    of : str
+        The part that asks for T at `joints`; the second part is called after it, such as ``T4_back``.
+    titles : pair of str
+    joints, hidden : sequence of float
+        Where X is asked for, and where it was measured, which the page does not say.
+    tolerance, length_tolerance : float
+        As of `Numbers`.
+    """
+    Z, E = arm.base, arm.tool
+    measured = measured_at(arm, hidden)
+    traps = [
+        Trap(
+            "Z and E are transposed here; the inverse of a pose is more than that, since p is turned too.",
+            constant(Z.T @ measured @ E.T),
+        ),
+        Trap(
+            "The two inverses have changed places: Z⁻¹ stands on the left, E⁻¹ on the right.",
+            constant(inverse(E) @ measured @ inverse(Z)),
+        ),
+    ]
+
+    def forth(arm: Arm, q: Probe) -> FloatArray:
+        pose: FloatArray = arm.fk(q)
+        return pose
+
+    def back(arm: Arm, q: Probe) -> FloatArray:
+        pose: FloatArray = inverse(arm.base) @ measured @ inverse(arm.tool)
+        return pose
+
+    def numbers(quantity: Quantity, at: Sequence[float]) -> Numbers:
+        return Numbers(quantity, at=at, tolerance=tolerance, length_tolerance=length_tolerance)
+
+    follows = Follows([of], lambda T: Z @ T @ E)
+    section = "sec-base-and-tool"
+    return [
+        Part("X", titles[0], 2, numbers(forth, joints), section, arm, follows=follows),
+        Part(f"{of}_back", titles[1], 2, numbers(back, hidden), section, arm, traps),
+    ]
+
+
+def measured_at(arm: Chain, hidden: Sequence[float]) -> FloatArray:
+    """The pose of the tool as somebody measured it."""
+    return np.asarray(arm.fk(hidden), dtype=float).round(6)
