@@ -206,6 +206,8 @@ def test_a_hint_on_a_modified_table_points_to_its_own_chapter():
     arm = Chain(arm.joints, "modified")
     part = Part("t", "T", 4, Table("modified"), arm=arm)
     links = [(j.a, j.alpha) for j in arm.joints]
-    rolled = [j.replace(a=a, alpha=alpha) for j, (a, alpha) in zip(arm.joints, [*links[1:], (0, 0)], strict=True)]
-    got = mark(part, read_answer(part.asks.request(), Chain(rolled, "modified")))
-    assert (got.misconception, got.section) == ("row", "sec-modified-trap-row")
+    moved = {"row": [*links[-1:], *links[:-1]], "convention": [*links[1:], (0, 0)]}
+    for key, section in (("row", "sec-modified-trap-row"), ("convention", "sec-modified-trap-formula")):
+        rows = [j.replace(a=a, alpha=alpha) for j, (a, alpha) in zip(arm.joints, moved[key], strict=True)]
+        got = mark(part, read_answer(part.asks.request(), Chain(rows, "modified")))
+        assert (got.misconception, got.section) == (key, section)
