@@ -55,19 +55,38 @@ def load_notebook(path: str | Path) -> dict[str, Any]:
             raise DHError(
                 f"{path.name} is larger than {LARGEST_FILE // 1_000_000} MB; clear its outputs and save it again."
             )
-        text = path.read_text(encoding="utf-8-sig")
+        data = path.read_bytes()
     except OSError as error:
         raise DHError(f"{path.name} cannot be opened: {error.strerror or type(error).__name__}.") from None
+    return parse_notebook(data, path.name)
+
+
+def parse_notebook(data: bytes, name: str) -> dict[str, Any]:
+    """A notebook as plain JSON, out of the bytes of a file of this name.
+
+    Raises
+    ------
+    DHError
+        If it is no notebook.
+
+    Examples
+    --------
+    >>> parse_notebook(b"%PDF", "essay.ipynb")
+    Traceback (most recent call last):
+    dhlib.errors.DHError: essay.ipynb is no notebook, or was cut off: it cannot be read as JSON.
+    """
+    try:
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise DHError(f"{path.name} is no notebook: it is not text. Was another file handed in?") from None
+        raise DHError(f"{name} is no notebook: it is not text. Was another file handed in?") from None
     if not text.strip():
-        raise DHError(f"{path.name} is empty.")
+        raise DHError(f"{name} is empty.")
     try:
         notebook = json.loads(text)
     except (ValueError, RecursionError):
-        raise DHError(f"{path.name} is no notebook, or was cut off: it cannot be read as JSON.") from None
+        raise DHError(f"{name} is no notebook, or was cut off: it cannot be read as JSON.") from None
     if not isinstance(notebook, dict) or not _raw_cells(notebook):
-        raise DHError(f"{path.name} holds no cells; it should be a Jupyter notebook.")
+        raise DHError(f"{name} holds no cells; it should be a Jupyter notebook.")
     return notebook
 
 
