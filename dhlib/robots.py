@@ -232,7 +232,7 @@ def pa10_6c(convention: str = "classic", lengths: str = "A") -> Chain:
     ----------
     convention : {"classic", "modified"}
     lengths : {"A", "B", "B2"}
-        As for :func:`pa10_7c`. On their own PA10-6C the lecture's group measured 70.6 mm from axis 5 to the
+        As for :func:`pa10_7c`. A drawing file for the lecture group's own PA10-6C has 70.6 mm from axis 5 to the
         tool plate (TAMS-Group/tams_openscad), which speaks for set A.
 
     Notes

@@ -29,7 +29,7 @@ from sphinx.util.docutils import SphinxDirective
 from dhlib import Chain, DHError, Revolute, robots
 from dhlib.drawing import draw
 from dhlib.export import chain_json
-from dhlib.sketch import link, sketch
+from dhlib.sketch import link, sketch, steps
 
 sys.path.append(str(ROOT / "book"))
 from bookkit.figures import inline_svg
@@ -106,6 +106,7 @@ class DhLink(LiveFigure):
         "reach": float,
         "unit": directives.unchanged_required,
         "index": directives.unchanged_required,
+        "still": lambda argument: directives.choice(argument, ("link", "steps")),
     }
 
     def values(self) -> dict[str, Any]:
@@ -135,14 +136,18 @@ class DhLink(LiveFigure):
         return {name: f"{value:g}" if isinstance(value, float) else value for name, value in self.values().items()}
 
     def still(self) -> tuple[str, str]:
-        """Return the link at its first values."""
+        """Return the link at its first values, or its four steps."""
         values = self.values()
         joint = Revolute(
             d=values["d"], a=values["a"], alpha=math.radians(values["alpha"]), offset=math.radians(values["theta"])
         )
         index = values["index"]
         before = str(int(index) - 1) if index.isdigit() else f"{index}-1"
-        drawing = link(Chain([joint], values["convention"]), 1, [0.0], names=(before, index))
+        chain = Chain([joint], values["convention"])
+        if self.options.get("still") == "steps":
+            drawing = steps(chain, 1, [0.0], names=(before, index), width=460)
+        else:
+            drawing = link(chain, 1, [0.0], names=(before, index))
         return drawing.svg(), drawing.alt
 
 
