@@ -3,7 +3,7 @@
 import numpy as np
 
 from dhlib import Chain, Revolute, Rx, Ry, Rz, Tx, Ty, Tz, inverse
-from dhlib.grading.asking import choice, constant
+from dhlib.grading.asking import constant, reasoned
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Function, Numbers
 
@@ -101,16 +101,24 @@ def half_inverses(of):
     ]
 
 
-def law(k, right, because):
-    """Which law a printed matrix breaks."""
+#: Faults that a matrix may have, by the letters of the page.
+FAULTS = {
+    "a": "its last row is 0 0 0 1, as it should be.",
+    "b": "all three columns n, o, a have length 1.",
+    "c": "n, o and a are at right angles: each product of two columns is 0.",
+    "d": "its determinant is +1.",
+    "e": "at least one of the four faults is there.",
+}
+
+
+def law(k, right, faults, because):
+    """Whether a printed matrix is a pose, and the faults that it has."""
     options = {
         "pose": "it looks like one, but one of the four questions finds a fault: put them in their order.",
-        "last row": "its last row is 0 0 0 1, as it should be.",
-        "length": "all three columns n, o, a have length 1.",
-        "right angles": "n, o and a are at right angles: each product of two columns is 0.",
-        "left-handed": "its determinant is positive, and that of left-handed axes is negative.",
+        "no pose": "check it again: last row, lengths, right angles, determinant.",
     }
-    return choice(f"law_{k}", f"Matrix {k}", right, options | {right: because}, "sec-pose")
+    reasons = {letter: "" if letter in faults else says for letter, says in FAULTS.items()}
+    return reasoned(f"law_{k}", f"Matrix {k}", right, options | {right: because}, reasons, "sec-pose")
 
 
 in_hand = Numbers(constant(inverse(HAND) @ CAMERA @ CUBE), at=())
@@ -230,9 +238,19 @@ EXERCISE = Exercise(
                 ),
             ],
         ),
-        law(1, "pose", "all four questions are passed: last row, lengths, right angles, determinant."),
-        law(2, "left-handed", "its determinant is -1: this is a mirror image, which no turn can make."),
-        law(3, "length", "column n is too long and o too short, though the determinant is +1: it does not see that."),
-        law(4, "right angles", "columns n and o have a product of 0.36: the angle between them is 69°."),
+        law(1, "pose", "e", "all four questions are passed: last row, lengths, right angles, determinant."),
+        law(2, "no pose", "d", "its determinant is -1: this is a mirror image, which no turn can make."),
+        law(
+            3,
+            "no pose",
+            "b",
+            "column n is too long and o too short, though the determinant is +1: it does not see that.",
+        ),
+        law(
+            4,
+            "no pose",
+            "cd",
+            "n · o is 0.36 and o · a is -0.48; and with slanting axes the determinant falls below 1.",
+        ),
     ],
 )

@@ -7,7 +7,7 @@ A reading is one of
 
 * ``{"values": [array, …]}``, one nested list of numbers per probe (null where a formula has no finite value);
 * ``{"table": {"rows": [[cell, …], …], "columns": …, "joints": …, "convention": …, "base": …, "tool": …}}``;
-* ``{"choice": text}``.
+* ``{"choice": text}``, or ``{"choices": [text, …]}`` with reasons.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ LARGEST_NUMBER = 1e9
 LONGEST_TEXT = 200
 MOST_ENTRIES = 400
 MOST_NAMES = 6
+MOST_CHOICES = 20
 DEEPEST = 4
 MOST_OPERATIONS = 20_000
 
@@ -148,6 +149,28 @@ def _read_choice(request: Request, value: Any) -> Reading:
     return {"choice": str(value).strip()[:LONGEST_TEXT]}
 
 
+def _read_reasoned(request: Request, value: Any) -> Reading:
+    """An option and letters of reasons, in whatever list or set they come."""
+    texts: list[str] = []
+    for item in _flat(value, DEEPEST):
+        if item is None or item is Ellipsis:
+            raise _Fault("missing")
+        texts.append(_read_choice(request, item)["choice"])
+    if len(texts) > MOST_CHOICES:
+        raise _Fault("size")
+    return {"choices": texts}
+
+
+def _flat(value: Any, depth: int) -> Iterator[Any]:
+    if isinstance(value, dict):
+        value = [*value, *value.values()]
+    if isinstance(value, (list, tuple, set, frozenset, np.ndarray)) and depth and len(value) <= MOST_ENTRIES:
+        for item in sorted(value, key=str) if isinstance(value, (set, frozenset)) else value:
+            yield from _flat(item, depth - 1)
+    else:
+        yield value
+
+
 def _read_table(request: Request, value: Any) -> Reading:
     """Cells as numbers or text; what they mean is for the marker to read."""
     from dhlib.chain import Chain
@@ -207,6 +230,7 @@ _READERS: dict[str, Callable[[Request, Any], Reading]] = {
     "frames": _read_frames,
     "table": _read_table,
     "choice": _read_choice,
+    "reasoned": _read_reasoned,
 }
 
 

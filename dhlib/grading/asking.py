@@ -9,7 +9,7 @@ import numpy as np
 
 from dhlib.chain import Chain
 from dhlib.grading.exercise import Follows, Part, Trap
-from dhlib.grading.forms import Arm, Choice, Function, Numbers, Probe, Quantity
+from dhlib.grading.forms import Arm, Choice, Function, Numbers, Probe, Quantity, Reason, ReasonedChoice
 from dhlib.scalars import FloatArray
 from dhlib.transforms import inverse
 
@@ -72,6 +72,26 @@ def link_function(n: int, seed: int, rounds: int = 2, length_tolerance: float = 
 def choice(part: str, title: str, right: str, because: Mapping[str, str], section: str, points: float = 1) -> Part:
     """One of several options; the words say why, or what to look at."""
     return Part(part, title, points, Choice(because, right), section=section)
+
+
+def reasoned(
+    part: str,
+    title: str,
+    right: str,
+    because: Mapping[str, str],
+    reasons: Mapping[str, str],
+    section: str,
+    points: float = 1,
+) -> Part:
+    """One of several options, and the letters of the reasons that hold.
+
+    Parameters
+    ----------
+    reasons : mapping of str to str
+        By letter, what to say to whoever gives it; empty if it holds.
+    """
+    letters = {letter: Reason(not says, says) for letter, says in reasons.items()}
+    return Part(part, title, points, ReasonedChoice(because, right, letters), section=section)
 
 
 def number(

@@ -244,4 +244,59 @@ class Choice:
         return {"form": self.kind, "options": list(self.options)}
 
 
-Form = Numbers | Formula | Function | Table | Frames | Choice
+@dataclass(frozen=True)
+class Reason:
+    """A statement that may be a reason for a choice.
+
+    Parameters
+    ----------
+    holds : bool
+        Whether it is true, and a reason.
+    says : str
+        What to say to whoever gives it though it does not hold.
+    """
+
+    holds: bool
+    says: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.holds and not self.says:
+            raise ValueError("a reason that does not hold should say why, to whoever gives it.")
+
+
+@dataclass(frozen=True)
+class ReasonedChoice(Choice):
+    """One of several options, and all the reasons that hold for it.
+
+    The student hands in the option, and then the letters of the reasons: ``"no pose", "c", "d"``.
+
+    Parameters
+    ----------
+    options, right
+        As of `Choice`.
+    reasons : mapping of str to Reason
+        By letter, as the page lists them.
+    """
+
+    reasons: Mapping[str, Reason] = field(default_factory=dict)
+
+    kind: ClassVar[str] = "reasoned"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.needed:
+            raise ValueError("at least one of the reasons should hold.")
+        if clash := {letter for letter in self.reasons if letter in self.options or len(letter) != 1}:
+            raise ValueError(f"a reason should go by a letter that is no option, and not by {min(clash)!r}.")
+
+    @property
+    def needed(self) -> set[str]:
+        """The letters of the reasons that hold."""
+        return {letter for letter, reason in self.reasons.items() if reason.holds}
+
+    def request(self) -> Request:
+        """See the module."""
+        return {**super().request(), "reasons": list(self.reasons)}
+
+
+Form = Numbers | Formula | Function | Table | Frames | Choice | ReasonedChoice

@@ -7,6 +7,7 @@ a reading but what it has validated itself, and it judges by meaning: by value, 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -15,9 +16,9 @@ import numpy as np
 
 from dhlib.grading.exercise import Exercise, Part
 from dhlib.grading.faults import MISSING, sentence, shape_text
-from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, Table, Valued
+from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, ReasonedChoice, Table, Valued
 from dhlib.grading.frames import judge_frames
-from dhlib.grading.marks import COARSE, FOLLOWS, NEARLY, OPEN, RIGHT, UNREADABLE, WRONG, Mark, make_mark
+from dhlib.grading.marks import COARSE, FOLLOWS, NEARLY, OPEN, REASONED, RIGHT, UNREADABLE, WRONG, Mark, make_mark
 from dhlib.grading.misconceptions import KNOWN, name_one, would_have_given
 from dhlib.grading.poses import describe, improper, listed
 from dhlib.grading.tables import judge_table
@@ -28,6 +29,7 @@ Reading = Mapping[str, Any]
 #: A number that no answer holds; beyond it arithmetic would overflow.
 LARGEST_NUMBER = 1e9
 LONGEST_TEXT = 500
+MOST_CHOICES = 20
 
 
 @dataclass(frozen=True)
@@ -79,6 +81,8 @@ def judge(part: Part, reading: Any, earlier: Mapping[str, Earlier], reveal: bool
         return Earlier(make_mark(part, verdict, sentence(reading, part.id, wanted(part), options)), None)
     try:
         match part.asks:
+            case ReasonedChoice():
+                return Earlier(_judge_reasoned(part, part.asks, reading), None)
             case Choice():
                 return Earlier(_judge_choice(part, part.asks, reading), None)
             case Table():
@@ -136,6 +140,9 @@ def wanted(part: Part) -> str:
     'a matrix of 4 rows and 4 columns'
     """
     match part.asks:
+        case ReasonedChoice():
+            letters = list(part.asks.reasons)
+            return f"one of {', '.join(part.asks.options)} and then letters from {letters[0]} to {letters[-1]}"
         case Choice():
             return f"one of {', '.join(part.asks.options)}"
         case Table():
@@ -222,6 +229,34 @@ def _judge_choice(part: Part, asks: Choice, reading: Mapping[str, Any]) -> Mark:
     if chosen == asks.right:
         return make_mark(part, RIGHT, _sentence(asks.options[chosen]))
     return make_mark(part, WRONG, _sentence(asks.options[chosen]))
+
+
+def _judge_reasoned(part: Part, asks: ReasonedChoice, reading: Mapping[str, Any]) -> Mark:
+    """The option first; its points are for the reasons, since one of two options is soon guessed."""
+    texts = reading.get("choices")
+    if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts) or len(texts) > MOST_CHOICES:
+        raise Refused
+    spelled = {_plain(option): option for option in asks.options}
+    chosen = {spelled[_plain(text)] for text in texts if _plain(text) in spelled}
+    words = {word for text in texts if _plain(text) not in spelled for word in re.findall(r"\w+", text.casefold())}
+    letters = {letter for word in words for letter in ([word] if word in asks.reasons else word)}
+    if len(chosen) != 1 or not letters <= asks.reasons.keys():
+        return make_mark(
+            part, UNREADABLE, f"It should be {wanted(part)}, each in quotation marks, with commas between."
+        )
+    (option,) = chosen
+    if option != asks.right:
+        return make_mark(part, WRONG, _sentence(asks.options[option]))
+    false, missing = sorted(letters - asks.needed), asks.needed - letters
+    if not false and not missing:
+        return make_mark(part, RIGHT, _sentence(asks.options[option]))
+    earned = REASONED * max(0, len(letters & asks.needed) - len(false)) / len(asks.needed)
+    says = f"The choice {option} is right"
+    if not letters:
+        return make_mark(part, NEARLY, f"{says}; now say why: which of the reasons {' '.join(asks.reasons)} hold?")
+    if false:
+        return make_mark(part, NEARLY, f"{says}, but reason {false[0]} is none: {asks.reasons[false[0]].says}", earned)
+    return make_mark(part, NEARLY, f"{says}, and so are the reasons that you give; there are more.", earned)
 
 
 def _sentence(text: str) -> str:

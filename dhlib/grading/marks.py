@@ -20,6 +20,8 @@ HEADLINES = {
 }
 #: Which part of the points an answer earns that is off by a little more than the tolerance.
 COARSE = 0.5
+#: Which part of the points a right choice earns at most whose reasons are not all given, or not all good.
+REASONED = 0.75
 #: What is wrong about a single number that still was worked out, and not guessed.
 OF_DRESS = ("degrees", "unit")
 

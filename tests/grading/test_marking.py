@@ -11,7 +11,7 @@ import sympy as sp
 from dhlib import Chain, Revolute, Rz, robots
 from dhlib.errors import DHError
 from dhlib.grading.answers import read_answer
-from dhlib.grading.asking import number
+from dhlib.grading.asking import number, reasoned
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap, load_exercise
 from dhlib.grading.forms import Choice, Function, Numbers, Valued
 from dhlib.grading.marking import Marker, mark
@@ -289,7 +289,7 @@ def test_prismatic_joints_and_the_modified_convention_are_diagnosed_too():
 def test_requests_hold_nothing_of_the_solution(every):
     for part in every.parts:
         request = part.asks.request()
-        assert set(request) <= {"form", "shape", "symbols", "points", "calls", "convention", "options"}
+        assert set(request) <= {"form", "shape", "symbols", "points", "calls", "convention", "options", "reasons"}
         assert json.loads(json.dumps(request)) == request
 
 
@@ -320,3 +320,45 @@ def test_a_wrong_single_number_earns_nothing_unless_its_unit_alone_is_wrong():
     whole = Part("m", "M", 2, Numbers(lambda arm, q: arm.fk(q), at=(0.3, 0.5)), arm=robots.planar(2),
                  traps=[Trap("That is the elbow.", lambda arm, q: arm.T(0, 1, q))])  # fmt: skip
     assert mark(whole, {"values": [robots.planar(2).T(0, 1, [0.3, 0.5]).tolist()]}).points == 0.5
+
+
+WHY = reasoned(
+    "w", "W", "no", {"yes": "look again.", "no": "a and c say why."},
+    {"a": "", "b": "it is not longer.", "c": "", "d": "it is not red."}, "", points=4,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("answer", "verdict", "points", "words"),
+    [
+        (("no", "a", "c"), "right", 4, "A and c say why."),
+        (["c", "a", "No"], "right", 4, ""),
+        (("no", ["a", "c"]), "right", 4, ""),
+        (("no", {"a", "c"}), "right", 4, ""),
+        ({"no": ["a", "c"]}, "right", 4, ""),
+        (("no", "ac"), "right", 4, ""),
+        ("no", "nearly", 0, "now say why: which of the reasons a b c d hold?"),
+        (("no", "a"), "nearly", 1.5, "there are more"),
+        (("no", "a", "b", "c"), "nearly", 1.5, "reason b is none: it is not longer."),
+        (("no", "b"), "nearly", 0, "reason b is none"),
+        (("yes", "a", "c"), "wrong", 0, "Look again."),
+        (("yes", "no", "a"), "unreadable", 0, "one of yes, no and then letters from a to d"),
+        (("no", "x"), "unreadable", 0, "letters from a to d"),
+        ("a", "unreadable", 0, ""),
+        (("no", 3.5), "unreadable", 0, ""),
+        (("no", ...), "open", 0, ""),
+        (["no"] * 30, "unreadable", 0, ""),
+    ],
+)
+def test_a_choice_with_reasons(answer, verdict, points, words):
+    """The option alone is soon guessed: its points are for the reasons."""
+    reading = json.loads(json.dumps(read_answer(WHY.asks.request(), answer)))
+    got = mark(WHY, reading)
+    assert (got.verdict, got.points) == (verdict, points), got
+    assert words in got.message
+
+
+def test_a_choice_with_bad_reasons_is_refused():
+    for reasons in ({"a": "no."}, {"no": ""}, {}):
+        with pytest.raises(ValueError, match="reason"):
+            reasoned("w", "W", "no", {"no": "so."}, reasons, "")
