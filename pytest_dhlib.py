@@ -21,6 +21,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--dh-exercise", default="", metavar="NAME", help="which exercise it is, if the notebook does not say"
     )
     group.addoption("--dh-exercises", default=None, metavar="DIR", help="where to look for exercises first")
+    group.addoption("--dh-key", default=None, metavar="FILE", help="of the course, for notebooks that were assigned")
     group.addoption("--dh-timeout", type=float, default=60.0, metavar="S", help="seconds for a notebook (60)")
 
 
@@ -40,8 +41,14 @@ def pytest_configure(config: pytest.Config) -> None:
     for path in paths:
         if not path.is_file():
             raise pytest.UsageError(f"--dh-grade: there is no file {path}.")
+    from dhlib.errors import DHError
+    from dhlib.grading.course.keys import read_key
     from dhlib.grading.plugin import Grading
 
+    try:
+        config.option.dh_key = read_key(config.option.dh_key) if config.option.dh_key else None
+    except DHError as error:
+        raise pytest.UsageError(f"--dh-key: {error}") from None
     if config.args_source is not pytest.Config.ArgsSource.ARGS:
         config.args = []
     config.args += [str(path) for path in paths]

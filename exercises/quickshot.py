@@ -1,23 +1,103 @@
 """What the Quickshot exercise asks, and how it is marked."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, robots
-from dhlib.grading.asking import link_function, pose, with_gripper
+from dhlib import Chain, Revolute, Rx, Rz, Tx, Ty, Tz
+from dhlib.grading.asking import link_function, measured_at, pose, with_gripper
+from dhlib.grading.course.sources import matrix, number, row
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 
-bare = robots.quickshot()
-#: Z and E as the page gives them.
-Z = Tx(300) @ Ty(-150) @ Tz(720) @ Rz(np.pi / 2)
-E = Tz(90) @ Rz(np.pi / 2) @ Rx(-np.pi / 6)
-ARM = Chain(bare.joints, "classic", base=Z, tool=E, name="Quickshot", unit="mm")
+
+@dataclass(frozen=True)
+class Given:
+    """The numbers of the task: lengths in mm, angles in degrees."""
+
+    height: float = 100
+    ahead: float = 20
+    upper_arm: float = 160
+    aside: float = 28
+    forearm: float = 250
+    angles: tuple[float, ...] = (30, -50, 70, 20)
+    corner: tuple[float, ...] = (300, -150, 720)
+    gripper: float = 90
+    tilt: float = -30
+    #: The pose of the last part comes from these joints; the page does not say so.
+    hidden: tuple[float, ...] = (40, 25, -65, 110)
+
+    @property
+    def arm(self):
+        joints = [
+            Revolute(d=self.height, a=self.ahead, alpha=-np.pi / 2),
+            Revolute(a=self.upper_arm),
+            Revolute(d=self.aside, alpha=np.pi / 2),
+            Revolute(d=self.forearm),
+        ]
+        return Chain(joints, "classic", name="Quickshot", unit="mm")
+
+    @property
+    def in_the_workshop(self):
+        """The arm with Z and E as the page gives them."""
+        x, y, z = self.corner
+        Z = Tx(x) @ Ty(y) @ Tz(z) @ Rz(np.pi / 2)
+        E = Tz(self.gripper) @ Rz(np.pi / 2) @ Rx(np.deg2rad(self.tilt))
+        return Chain(self.arm.joints, "classic", base=Z, tool=E, name="Quickshot", unit="mm")
+
+
+DEFAULT = Given()
+
+
+def draw(lots):
+    """Another arm of this kind in another workshop: no length and no angle is that of the book."""
+    sizes = lots.some("angles", range(21, 77, 5), 4)  # all different, so that no sum of two is zero
+    signs = lots.one("signs", [(1, -1, 1, 1), (-1, -1, 1, 1), (1, 1, -1, -1), (-1, 1, -1, 1), (1, -1, 1, -1)])
+    return Given(
+        height=lots.one("height", range(82, 140, 4)),
+        ahead=lots.one("ahead", range(22, 39, 2)),
+        upper_arm=lots.one("upper arm", range(142, 200, 6)),
+        aside=lots.one("aside", range(31, 48, 2)),
+        forearm=lots.one("forearm", range(212, 290, 6)),
+        angles=tuple(sign * size for sign, size in zip(signs, sizes, strict=True)),
+        corner=(
+            lots.one("x", range(210, 400, 20)),
+            -lots.one("y", range(110, 200, 20)),
+            lots.one("z", range(670, 800, 20)),
+        ),
+        gripper=lots.one("gripper", range(64, 120, 8)),
+        tilt=lots.one("tilt", [-55, -50, -40, -35, -25, -20]),
+        # No sum of theta2 and theta3 is a multiple of 5: no quarter turn hides in it.
+        hidden=tuple(
+            lots.one(f"hidden {i}", [*range(-last - 100, -last, 10), *range(10 + last, 110 + last, 10)])
+            for i, last in enumerate((6, 1, 7, 4), 1)
+        ),
+    )
+
+
+def cells(given):
+    """The given cells of the notebook."""
+    measured = measured_at(given.in_the_workshop, np.deg2rad(given.hidden))
+    return {
+        "arm": f"""\
+# Lengths of the arm, in millimetres
+height = {number(given.height)}
+ahead = {number(given.ahead)}
+upper_arm = {number(given.upper_arm)}
+aside = {number(given.aside)}
+forearm = {number(given.forearm)}""",
+        "angles": f"q = np.deg2rad({row(given.angles)})",
+        "ends": f"""\
+# Lengths in millimetres, the tilt in radians
+corner = {row(given.corner)}
+gripper = {number(given.gripper)}
+tilt = np.deg2rad({number(given.tilt)})""",
+        "measured": matrix("X_measured", measured, decimals=(4, 4, 4, 2)),
+    }
+
 
 SYMBOLS = ["theta1", "theta2", "theta3", "theta4"]
-JOINTS = np.deg2rad([30, -50, 70, 20])
 QUARTERS = np.deg2rad([90, -90, 180, -90])
-#: The pose of the last part, as the page gives it, comes from these joints; the page does not say so.
-HIDDEN = np.deg2rad([40, 25, -65, 110])
 
 LINKS = ("A1", "A2", "A3", "A4")
 PRODUCT = Follows(LINKS, lambda A1, A2, A3, A4: A1 @ A2 @ A3 @ A4)
@@ -30,105 +110,111 @@ def slides_entry(arm, q):
     return s[0] * c[3] * (s[1] * c[2] + c[1] * s[2]) + c[0] * s[3]
 
 
-EXERCISE = Exercise(
-    name="quickshot",
-    title="The Quickshot",
-    arm=ARM,
-    parts=[
-        Part("frames", "Place the frames", 3, Frames("classic", count=5), section="sec-quickshot-frames", arm=bare),
-        Part("table", "Write the table", 4, Table("classic"), section="sec-quickshot-table", arm=bare),
-        *(
-            Part(
-                link,
-                f"{link} in numbers",
-                1,
-                Numbers(pose(i - 1, i), at=JOINTS),
-                section="sec-quickshot-links",
-                kinematics=False,
-            )
-            for i, link in enumerate(LINKS, 1)
-        ),
-        *(
-            Part(
-                f"{link}_sym",
-                f"{link} in symbols",
-                1,
-                Formula(pose(i - 1, i), symbols=SYMBOLS),
-                section="sec-quickshot-links",
-                kinematics=False,
-            )
-            for i, link in enumerate(LINKS, 1)
-        ),
-        Part(
-            "link",
-            "Any link, as a function",
-            2,
-            link_function(4, seed=4, length_tolerance=1e-3),
-            section="sec-classic-product",
-            kinematics=False,
-        ),
-        Part(
-            "T4",
-            "T4 in numbers",
-            2,
-            Numbers(pose(0, 4), at=JOINTS),
-            section="sec-quickshot-product",
-            follows=PRODUCT,
-            kinematics=False,
-        ),
-        Part(
-            "T4_quarter",
-            "T4 at quarter turns",
-            1,
-            Numbers(pose(0, 4), at=QUARTERS),
-            section="sec-quickshot-product",
-            kinematics=False,
-        ),
-        Part(
-            "T4_sym",
-            "T4 in symbols",
-            3,
-            Formula(pose(0, 4), symbols=SYMBOLS),
-            section="sec-quickshot-product",
-            follows=FORMULAS,
-            kinematics=False,
-        ),
-        Part(
-            "slip",
-            "Find the slip",
-            1,
-            Choice(
-                {
-                    "n_x": "n_x is right as printed: compare it with your own T4, entry by entry.",
-                    "n_y": "the printed n has no length of 1, and the other two entries agree with the product.",
-                    "n_z": "n_z is right as printed: it is -S23 C4, written out.",
-                },
-                right="n_y",
+def exercise(given):
+    """The exercise with these numbers."""
+    bare, arm, at = given.arm, given.in_the_workshop, np.deg2rad(given.angles)
+    return Exercise(
+        name="quickshot",
+        title="The Quickshot",
+        arm=arm,
+        parts=[
+            Part("frames", "Place the frames", 3, Frames("classic", count=5), section="sec-quickshot-frames", arm=bare),
+            Part("table", "Write the table", 4, Table("classic"), section="sec-quickshot-table", arm=bare),
+            *(
+                Part(
+                    link,
+                    f"{link} in numbers",
+                    1,
+                    Numbers(pose(i - 1, i), at=at),
+                    section="sec-quickshot-links",
+                    kinematics=False,
+                )
+                for i, link in enumerate(LINKS, 1)
             ),
-            section="sec-quickshot-slip",
-        ),
-        Part(
-            "n_y",
-            "Mend the slip",
-            2,
-            Formula(lambda arm, q: arm.T(0, 4, q)[1, 0], shape=(), symbols=SYMBOLS),
-            section="sec-quickshot-slip",
-            traps=[
-                Trap(
-                    "This is the entry as it is printed. Its bracket is S23; which sum of angles belongs there?",
-                    slides_entry,
+            *(
+                Part(
+                    f"{link}_sym",
+                    f"{link} in symbols",
+                    1,
+                    Formula(pose(i - 1, i), symbols=SYMBOLS),
+                    section="sec-quickshot-links",
+                    kinematics=False,
+                )
+                for i, link in enumerate(LINKS, 1)
+            ),
+            Part(
+                "link",
+                "Any link, as a function",
+                2,
+                link_function(4, seed=4, length_tolerance=1e-3),
+                section="sec-classic-product",
+                kinematics=False,
+            ),
+            Part(
+                "T4",
+                "T4 in numbers",
+                2,
+                Numbers(pose(0, 4), at=at),
+                section="sec-quickshot-product",
+                follows=PRODUCT,
+                kinematics=False,
+            ),
+            Part(
+                "T4_quarter",
+                "T4 at quarter turns",
+                1,
+                Numbers(pose(0, 4), at=QUARTERS),
+                section="sec-quickshot-product",
+                kinematics=False,
+            ),
+            Part(
+                "T4_sym",
+                "T4 in symbols",
+                3,
+                Formula(pose(0, 4), symbols=SYMBOLS),
+                section="sec-quickshot-product",
+                follows=FORMULAS,
+                kinematics=False,
+            ),
+            Part(
+                "slip",
+                "Find the slip",
+                1,
+                Choice(
+                    {
+                        "n_x": "n_x is right as printed: compare it with your own T4, entry by entry.",
+                        "n_y": "the printed n has no length of 1, and the other two entries agree with the product.",
+                        "n_z": "n_z is right as printed: it is -S23 C4, written out.",
+                    },
+                    right="n_y",
                 ),
-                Trap(
-                    "This is n_x: in n_y the sine of θ1 stands where n_x has the cosine.",
-                    lambda arm, q: arm.T(0, 4, q)[0, 0],
-                ),
-                Trap(
-                    "The bracket is C23 with a plus sign; cos(α + β) = cos α cos β - sin α sin β.",
-                    lambda arm, q: np.sin(q[0]) * np.cos(q[3]) * np.cos(q[1] - q[2]) + np.cos(q[0]) * np.sin(q[3]),
-                ),
-            ],
-            kinematics=False,
-        ),
-        *with_gripper(ARM, "T4", ("Base and tool", "Back from X"), JOINTS, HIDDEN),
-    ],
-)
+                section="sec-quickshot-slip",
+            ),
+            Part(
+                "n_y",
+                "Mend the slip",
+                2,
+                Formula(lambda arm, q: arm.T(0, 4, q)[1, 0], shape=(), symbols=SYMBOLS),
+                section="sec-quickshot-slip",
+                traps=[
+                    Trap(
+                        "This is the entry as it is printed. Its bracket is S23; which sum of angles belongs there?",
+                        slides_entry,
+                    ),
+                    Trap(
+                        "This is n_x: in n_y the sine of θ1 stands where n_x has the cosine.",
+                        lambda arm, q: arm.T(0, 4, q)[0, 0],
+                    ),
+                    Trap(
+                        "The bracket is C23 with a plus sign; cos(α + β) = cos α cos β - sin α sin β.",
+                        lambda arm, q: np.sin(q[0]) * np.cos(q[3]) * np.cos(q[1] - q[2]) + np.cos(q[0]) * np.sin(q[3]),
+                    ),
+                ],
+                kinematics=False,
+            ),
+            *with_gripper(arm, "T4", ("Base and tool", "Back from X"), at, np.deg2rad(given.hidden)),
+        ],
+    )
+
+
+EXERCISE = exercise(DEFAULT)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from dhlib.errors import DHError
+from dhlib.grading.course.keys import read_key
 from dhlib.grading.grade import FAILED, GRADED, Result, grade_notebook
 from dhlib.grading.wall import Limits
 
@@ -41,6 +42,7 @@ def add_grade(commands: Any) -> None:
         "--exercise", default="", metavar="NAME", help="which exercise it is, if the notebooks do not say"
     )
     parser.add_argument("--exercises", type=Path, metavar="DIR", help="where to look for exercises first")
+    parser.add_argument("--key", type=Path, metavar="FILE", help="of the course, for notebooks that were assigned")
     parser.add_argument("--timeout", type=_positive, default=60.0, metavar="S", help="seconds for a notebook (60)")
     parser.add_argument("--workers", type=_count, default=os.cpu_count() or 1, metavar="N", help="notebooks at a time")
     parser.set_defaults(run=grade)
@@ -92,11 +94,12 @@ def find_notebooks(path: Path) -> list[Path]:
 
 
 def _grade_all(paths: Sequence[Path], options: argparse.Namespace) -> Iterator[Result]:
+    key = read_key(options.key) if options.key else None
     import sympy  # noqa: F401  before the threads: one that finds it half imported would fail
 
     def grade_one(path: Path) -> Result:
         try:
-            return grade_notebook(path, options.exercise, options.exercises, Limits.of(options.timeout))
+            return grade_notebook(path, options.exercise, options.exercises, Limits.of(options.timeout), key=key)
         except DHError:
             raise
         except Exception as error:  # ours to mend; the others should not suffer

@@ -10,6 +10,9 @@ A solution notebook is the only source. In its code cells a region
 
 becomes ``A1 = ...``. Markdown cells with the role ``solution`` fall away. Nothing else of a cell is kept than its id,
 its kind, its source and its role, so that no output, attachment or metadata can carry a solution along.
+
+Cells with the role ``given`` state the numbers of the task. What stands in them is written by the exercise's own file
+(see `course.variants`): first the solution gets what its file says today, and then the exercise is derived.
 """
 
 from __future__ import annotations
@@ -22,10 +25,11 @@ from pathlib import Path
 from typing import Any
 
 from dhlib.errors import DHError
+from dhlib.grading.course.variants import fill, load_variant
 from dhlib.grading.notebook import CHECK_CALL, load_notebook
 
 MARKS = ("### solution", "### yours", "### end")
-ROLES = ("setup", "text", "answer", "check", "solution")
+ROLES = ("setup", "text", "given", "answer", "check", "solution")
 CELL_ID = re.compile(r"[a-zA-Z0-9_-]{1,64}")
 KERNEL = {"display_name": "Python 3", "language": "python", "name": "python3"}
 
@@ -58,8 +62,10 @@ def derive(solution: dict[str, Any], name: str) -> dict[str, Any]:
         if not CELL_ID.fullmatch(cell_id) or cell_id in ids:
             raise DHError(f"{here}: the id should be there, and once only.")
         ids.add(cell_id)
-        if cell["cell_type"] == "code" and (role, part) in places:
-            raise DHError(f"{here}: there is a code cell of this role and part already; give it a part of its own.")
+        if role == "given" and not part:
+            raise DHError(f"{here}: a given cell should name its part, as cells(given) in {name}.py does.")
+        if (cell["cell_type"] == "code" or role == "given") and (role, part) in places:
+            raise DHError(f"{here}: there is a cell of this role and part already; give it a part of its own.")
         places.add((role, part))
         if role == "solution":
             continue
@@ -136,19 +142,25 @@ def main(arguments: list[str] | None = None) -> int:
     for source in sources:
         target = options.exercises / source.name
         try:
-            derived = as_text(derive(load_notebook(source), source.stem))
+            solution = load_notebook(source)
+            stored = as_text(solution)
+            fill(solution, load_variant(source.stem, options.exercises).given)
+            derived = as_text(derive(solution, source.stem))
         except DHError as error:
             print(error, file=sys.stderr)
             return 2
-        if target.is_file() and target.read_text(encoding="utf-8") == derived:
-            continue
-        if options.check:
-            drifted.append(target)
-        else:
-            target.write_text(derived, encoding="utf-8")
-            print(f"derived {target}")
-    for target in drifted:
-        print(f"{target} is not what its solution gives: run make exercises.", file=sys.stderr)
+        written = [(target, derived)] if not target.is_file() or target.read_text(encoding="utf-8") != derived else []
+        if as_text(solution) != stored:
+            written.append((source, as_text(solution)))
+        for path, text in written:
+            if options.check:
+                drifted.append(path)
+            else:
+                path.write_text(text, encoding="utf-8")
+                print(f"derived {path}" if path == target else f"{path} has other numbers: run it again")
+    for path in drifted:
+        why = "what its solution gives" if path.parent == options.exercises else "what its exercise's file gives"
+        print(f"{path} is not {why}: run make exercises.", file=sys.stderr)
     return 1 if drifted else 0
 
 

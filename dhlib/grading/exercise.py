@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import ModuleType
 
 import dhlib
 from dhlib.chain import Chain
@@ -197,12 +198,17 @@ def load_exercise(name: str, folder: str | Path | None = None) -> Exercise:
     'The Quickshot'
     """
     path = find_exercise(name, ".py", folder)
-    spec = importlib.util.spec_from_file_location(f"dhlib_exercise_{name}", path)
+    exercise = getattr(load_module(path), "EXERCISE", None)
+    if not isinstance(exercise, Exercise):
+        raise DHError(f"{path} should end with EXERCISE = Exercise(…).")
+    return exercise
+
+
+def load_module(path: Path) -> ModuleType:
+    """The file of an exercise, as a module of its own."""
+    spec = importlib.util.spec_from_file_location(f"dhlib_exercise_{path.stem}", path)
     if spec is None or spec.loader is None:
         raise DHError(f"{path} cannot be read as Python.")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    exercise = getattr(module, "EXERCISE", None)
-    if not isinstance(exercise, Exercise):
-        raise DHError(f"{path} should end with EXERCISE = Exercise(…).")
-    return exercise
+    return module

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from dhlib.errors import DHError
-from dhlib.grading.exercise import Exercise, find_exercise, load_exercise
+from dhlib.grading.course.papers import NotAssigned, Paper, check_tag, load_paper, read_tag
+from dhlib.grading.exercise import Exercise, find_exercise
 from dhlib.grading.marking import Marker
 from dhlib.grading.marks import OPEN, Mark
-from dhlib.grading.notebook import Cell, exercise_name, load_notebook, merge, read_cells
+from dhlib.grading.notebook import Cell, load_notebook, merge, read_cells
 from dhlib.grading.wall import Limits, Outcome, Sandbox
 
 GRADED, INCOMPLETE, UNREADABLE, FAILED = "graded", "stopped", "unreadable", "failed"
@@ -57,6 +58,7 @@ def grade_notebook(
     limits: Limits | None = None,
     *,
     sandbox: Sandbox | None = None,
+    key: bytes | None = None,
 ) -> Result:
     """Grade one notebook.
 
@@ -71,6 +73,8 @@ def grade_notebook(
         What it may use; by default those of the sandbox.
     sandbox : Sandbox, optional
         Where it runs; one is started for it if left out, which takes a second.
+    key : bytes, optional
+        Of the course: then only notebooks that were assigned with it are graded, each by its own numbers.
 
     Returns
     -------
@@ -86,12 +90,21 @@ def grade_notebook(
     try:
         notebook = load_notebook(path)
         submission = read_cells(notebook)
+        tag = read_tag(notebook)
+        if key is not None:
+            check_tag(tag, key)
+        elif tag.student:
+            raise NotAssigned(f"it was assigned to {tag.student!r}: grade it with --key.")
+    except NotAssigned as error:
+        return Result(path, UNREADABLE, f"{path.name} cannot be graded: {error}")
     except DHError as error:
         return Result(path, UNREADABLE, str(error))
-    exercise, pristine = _exercise(name or exercise_name(notebook) or path.stem, exercises, given=bool(name))
-    if exercise is None:
+    name, given = (tag.exercise, False) if key is not None else (name or tag.exercise or path.stem, bool(name))
+    paper = _paper(name, exercises, key, tag.student or None, given)
+    if paper is None:
         return Result(path, UNREADABLE, f"{path.name} does not say which exercise it is; name it with --exercise NAME.")
-    cells = merge(pristine, submission)
+    exercise = paper.exercise
+    cells = merge(paper.cells, submission)
     requests = {part.id: part.asks.request() for part in exercise.parts}
     with contextlib.ExitStack() as stack:
         sandbox = sandbox or stack.enter_context(Sandbox())
@@ -100,17 +113,17 @@ def grade_notebook(
     return Result(path, INCOMPLETE if outcome.note else GRADED, outcome.note, exercise, marks)
 
 
-def _exercise(
-    name: str, exercises: str | Path | None, given: bool
-) -> tuple[Exercise, list[Cell]] | tuple[None, list[Cell]]:
-    """The exercise and its pristine cells; none if a submission names one that is not there."""
+def _paper(
+    name: str, exercises: str | Path | None, key: bytes | None, student: str | None, given: bool
+) -> Paper | None:
+    """What the student was given; none if a submission names an exercise that is not there."""
     try:
         find_exercise(name, ".py", exercises)
     except DHError:
         if given:
             raise
-        return None, []
-    return load_exercise(name, exercises), read_cells(load_notebook(find_exercise(name, ".ipynb", exercises)))
+        return None
+    return load_paper(name, exercises, key, student)
 
 
 def _with_error(mark: Mark, cells: Sequence[Cell], outcome: Outcome) -> Mark:

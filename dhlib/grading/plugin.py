@@ -33,7 +33,7 @@ class GradedNotebook(pytest.File):
         if self._result is None:
             option = self.config.option
             limits = Limits.of(option.dh_timeout)
-            self._result = grade_notebook(self.path, option.dh_exercise, option.dh_exercises, limits)
+            self._result = grade_notebook(self.path, option.dh_exercise, option.dh_exercises, limits, key=option.dh_key)
         return self._result
 
     def collect(self) -> Iterator[pytest.Item]:

@@ -74,6 +74,12 @@ def run(notebook):
 
 
 @pytest.fixture(scope="session")
+def variables():
+    """``variables(notebook)``: those that a notebook of ours makes when it runs."""
+    return run
+
+
+@pytest.fixture(scope="session")
 def judge(exercise):
     """``judge(part, value)``: the mark of a value, as every face gives it, through JSON."""
 

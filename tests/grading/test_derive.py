@@ -112,13 +112,21 @@ def test_indented_regions_keep_their_place():
     assert open_regions(source) == "def f():\n    return ..."
 
 
+def the(cells, cell_id):
+    return next(cell for cell in cells if cell["id"] == cell_id)
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
         (lambda cells: cells[1]["metadata"].clear(), "should have a role"),
         (lambda cells: cells[2].update(id=cells[1]["id"]), "once only"),
-        (lambda cells: cells[5].update(source='check("A1", 1)'), "the check cell of frames should be"),
-        (lambda cells: cells[9].update(id="x", metadata=cells[4]["metadata"]), "already"),
+        (
+            lambda cells: the(cells, "check-frames").update(source='check("A1", 1)'),
+            "the check cell of frames should be",
+        ),
+        (lambda cells: the(cells, "answer-A1").update(metadata=the(cells, "answer-frames")["metadata"]), "already"),
+        (lambda cells: the(cells, "given-arm")["metadata"]["dh"].pop("part"), "should name its part"),
     ],
 )
 def test_a_broken_solution_is_named(solution, change, words):

@@ -1,0 +1,176 @@
+"""Every student their own numbers: drawn again by whoever has the key, all of equal difficulty, and stored nowhere."""
+
+import copy
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dhlib.errors import DHError
+from dhlib.grading.answers import read_answer
+from dhlib.grading.course.lots import Lots
+from dhlib.grading.course.papers import load_paper
+from dhlib.grading.course.variants import Variants, fill
+from dhlib.grading.forms import Valued
+from dhlib.grading.marking import Marker, agree
+
+ROOT = Path(__file__).parents[2]
+KEY = bytes(range(32))
+NAMES = sorted(path.stem for path in (ROOT / "solutions").glob("*.ipynb"))
+STUDENTS = ["s1", "Müller-Lüdenscheidt", "0815"]
+VARYING = [name for name in NAMES if Variants(name, ROOT / "exercises").vary]
+
+
+@pytest.fixture(scope="session")
+def variants():
+    return {name: Variants(name, ROOT / "exercises") for name in VARYING}
+
+
+def load(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def solution_of(name, variant):
+    notebook = load(ROOT / "solutions" / f"{name}.ipynb")
+    fill(notebook, variant.given)
+    return without_checks(notebook)
+
+
+def without_checks(notebook):
+    """Checks know the numbers of the book alone."""
+    cells = [cell for cell in notebook["cells"] if cell["metadata"]["dh"]["role"] != "check"]
+    return {**notebook, "cells": cells}
+
+
+def marks_of(exercise, names):
+    readings = {part.id: read_answer(part.asks.request(), names.get(part.id)) for part in exercise.parts}
+    return {mark.part: mark for mark in Marker(exercise).mark_all(json.loads(json.dumps(readings)))}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_stored_notebook_holds_what_its_file_says(name):
+    for folder in ("solutions", "exercises"):
+        notebook = load(ROOT / folder / f"{name}.ipynb")
+        filled = copy.deepcopy(notebook)
+        fill(filled, Variants(name, ROOT / "exercises").of().given)
+        assert filled == notebook, "run make exercises"
+
+
+@pytest.mark.parametrize("name", VARYING)
+@pytest.mark.parametrize("student", STUDENTS)
+def test_the_solution_solves_every_students_numbers(name, student, variants, variables):
+    variant = variants[name].of(KEY, student)
+    marks = marks_of(variant.exercise, variables(solution_of(name, variant)))
+    assert {part: str(mark) for part, mark in marks.items() if mark.points < mark.out_of} == {}
+
+
+@pytest.mark.parametrize("name", VARYING)
+def test_the_public_solution_earns_next_to_nothing_of_what_has_numbers(name, variants, variables):
+    """Negative control of the above, and the reason for it all."""
+    public = variables(without_checks(load(ROOT / "solutions" / f"{name}.ipynb")))
+    book = variants[name].of()
+    for student in STUDENTS:
+        variant = variants[name].of(KEY, student)
+        marks = marks_of(variant.exercise, public)
+        other = [part.id for part in variant.exercise.parts if differs(part, book.exercise.part(part.id))]
+        assert other
+        assert {part for part in other if marks[part].verdict == "right"} == set()
+
+
+def differs(part, of_the_book):
+    """Whether a part has another answer than in the book."""
+    if isinstance(part.asks, Valued):
+        mine, theirs = (asked.asks.values(asked.chain) for asked in (part, of_the_book))
+        return not agree(theirs, mine, part.asks.tolerances)
+    return getattr(part.asks, "right", None) != getattr(of_the_book.asks, "right", None)
+
+
+@pytest.mark.parametrize("name", VARYING)
+def test_no_variant_is_luckier_than_the_book(name, variants):
+    """What differs from the right answer in the book differs from it for every student: no zero hides a mistake."""
+    book = variants[name].of().exercise
+    for k in range(12):
+        variant = variants[name].of(KEY, f"student {k}")
+        assert [part.id for part in variant.exercise.parts] == [part.id for part in book.parts]
+        assert variant.exercise.points == book.points
+        for part, default in zip(variant.exercise.parts, book.parts, strict=True):
+            if not isinstance(part.asks, Valued):
+                continue
+            assert part.asks.shape == default.asks.shape
+            right, theirs = part.asks.values(part.chain), default.asks.values(default.chain)
+            assert np.sum(np.abs(right) < 1e-9) <= np.sum(np.abs(theirs) < 1e-9), part.id
+            for trap, same in zip(part.traps, default.traps, strict=True):
+                told, known = told_by(trap, part), told_by(same, default)
+                if not agree(known, theirs, default.asks.tolerances):
+                    assert not agree(told, right, part.asks.tolerances), (part.id, trap.says)
+
+
+def told_by(trap, part):
+    return np.array([np.asarray(trap.quantity(part.chain, *probe), dtype=float) for probe in part.asks.probes])
+
+
+@pytest.mark.parametrize("name", VARYING)
+def test_numbers_are_the_students_own_and_readable(name, variants):
+    book = variants[name].of().given
+    drawn = [variants[name].of(KEY, f"student {k}").given for k in range(40)]
+    for part, source in book.items():
+        assert all(given[part] != source for given in drawn), f"{part} stands in the book"
+    texts = ["".join(given.values()) for given in drawn]
+    assert len(set(texts)) == len(texts)
+    assert max(len(number) for text in texts for number in re.findall(r"\d+\.?\d*", text)) <= 9
+
+
+def test_what_is_drawn_depends_on_the_key_the_student_the_exercise_and_the_name_alone():
+    def drawn(key=KEY, student="s1", exercise="quickshot", name="height"):
+        return Lots(key, student, exercise).some(name, range(1000), 5)
+
+    assert drawn() == drawn()
+    assert drawn(student=" S1") == drawn()
+    changed = [drawn(key=KEY[::-1]), drawn(student="s2"), drawn(exercise="planar"), drawn(name="ahead")]
+    assert len({tuple(numbers) for numbers in [drawn(), *changed]}) == 5
+
+
+def test_what_is_drawn_is_written_down_here():
+    """Whoever changes how lots are drawn changes the numbers of notebooks that are out."""
+    assert Lots(KEY, "s1", "quickshot").some("height", range(1000), 4) == [91, 901, 602, 507]
+
+
+def test_draws_are_even():
+    counts = np.bincount([Lots(KEY, f"s{k}", "x").one("die", range(6)) for k in range(3000)], minlength=6)
+    assert np.sum((counts - 500) ** 2 / 500) < 20.5  # chi squared, five degrees of freedom, one in a thousand
+
+
+def test_papers_hold_the_numbers_of_their_student():
+    mine, yours, book = (
+        load_paper("quickshot", ROOT / "exercises", key, student)
+        for key, student in ((KEY, "s1"), (KEY, "s2"), (None, None))
+    )
+    sources = [
+        {cell.part: cell.source for cell in paper.cells if cell.role == "given"} for paper in (mine, yours, book)
+    ]
+    assert sources[0] != sources[1] != sources[2] != sources[0]
+    assert [(cell.role, cell.part) for cell in mine.cells] == [(cell.role, cell.part) for cell in book.cells]
+    arms = [paper.exercise.part("table").chain for paper in (mine, yours, book)]
+    assert len({arm.joints[0].d for arm in arms} | {arm.joints[1].a for arm in arms}) > 3
+
+
+def test_an_exercise_without_numbers_of_its_own_says_so(tmp_path):
+    (tmp_path / "plain.py").write_text(
+        "from dhlib import robots\nfrom dhlib.grading.exercise import Exercise\n"
+        'EXERCISE = Exercise("plain", "Plain", robots.planar(2))\n'
+    )
+    assert Variants("plain", tmp_path).of().given == {}
+    with pytest.raises(DHError, match=r"has no numbers to draw: .*plain\.py should offer draw"):
+        Variants("plain", tmp_path).of(KEY, "s1")
+
+
+def test_cells_and_sources_belong_together():
+    notebook = load(ROOT / "solutions" / "quickshot.ipynb")
+    given = dict(Variants("quickshot", ROOT / "exercises").of().given)
+    with pytest.raises(DHError, match="no given cell for more"):
+        fill(copy.deepcopy(notebook), {**given, "more": "x = 1"})
+    del given["angles"]
+    with pytest.raises(DHError, match="'angles' has no source"):
+        fill(copy.deepcopy(notebook), given)
