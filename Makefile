@@ -34,7 +34,7 @@ endif
 export UV_PYTHON_DOWNLOADS := never
 export UV_NO_CONFIG := 1
 
-.PHONY: help book serve pdf zip test lint exercises lock venv clean distclean
+.PHONY: help book serve pdf zip test lint exercises solutions lock venv clean distclean
 .DELETE_ON_ERROR:
 
 help:
@@ -45,6 +45,7 @@ help:
 	@echo 'make serve      build the book, serve it on this machine and open it'
 	@echo 'make lint       lint and types only'
 	@echo 'make exercises  derive the student notebooks from the solutions'
+	@echo 'make solutions  run the worked notebooks again, and keep their outputs'
 	@echo 'make lock       pin the newest versions (needs the network)'
 	@echo 'make clean      remove what was built; make distclean: the tools too'
 
@@ -82,6 +83,9 @@ test: lint $(NODE_READY)
 
 exercises: $(VENV_READY)
 	@$(RUN) -m dhlib.grading.derive
+
+solutions: exercises
+	@$(RUN) -m dhlib.grading.course.worked solutions/*.ipynb
 
 clean:
 	rm -rf _build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

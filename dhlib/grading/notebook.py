@@ -90,13 +90,6 @@ def parse_notebook(data: bytes, name: str) -> dict[str, Any]:
     return notebook
 
 
-def exercise_name(notebook: dict[str, Any]) -> str:
-    """The exercise that a notebook says it belongs to, or ``""``."""
-    about = _dict(_dict(notebook.get("metadata")).get("dh"))
-    name = about.get("exercise")
-    return name if isinstance(name, str) else ""
-
-
 def merge(pristine: Iterable[Cell], submission: Iterable[Cell]) -> list[Cell]:
     """Code cells to run: the pristine exercise, with the answers and the extra cells of a submission.
 

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from dhlib.errors import DHError
-from dhlib.grading.notebook import Cell, exercise_name, load_notebook, merge, read_cells
+from dhlib.grading.notebook import Cell, load_notebook, merge, read_cells
 
 SETUP = Cell("import math", role="setup")
 PRISTINE = [
@@ -112,8 +112,3 @@ def test_damaged_cells_are_read_as_far_as_they_go(tmp_path):
 def test_old_notebooks_are_read(tmp_path):
     old = {"nbformat": 3, "worksheets": [{"cells": [{"cell_type": "code", "input": ["A = 1"], "language": "python"}]}]}
     assert read_cells(load_notebook(write(tmp_path / "x.ipynb", old)))[0].source == "A = 1"
-
-
-def test_the_notebook_names_its_exercise():
-    assert exercise_name({"metadata": {"dh": {"exercise": "quickshot"}}}) == "quickshot"
-    assert exercise_name({"metadata": {"dh": {"exercise": ["x"]}}}) == exercise_name({}) == ""

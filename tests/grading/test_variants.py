@@ -11,7 +11,7 @@ import pytest
 from dhlib.errors import DHError
 from dhlib.grading.answers import read_answer
 from dhlib.grading.course.lots import Lots
-from dhlib.grading.course.papers import load_paper
+from dhlib.grading.course.papers import NotAssigned, as_metadata, check_tag, load_paper, make_tag, read_tag
 from dhlib.grading.course.variants import Variants, fill
 from dhlib.grading.forms import Valued
 from dhlib.grading.marking import Marker, agree
@@ -174,3 +174,25 @@ def test_cells_and_sources_belong_together():
     del given["angles"]
     with pytest.raises(DHError, match="'angles' has no source"):
         fill(copy.deepcopy(notebook), given)
+
+
+def test_the_tag_of_a_notebook_is_read_whatever_it_holds():
+    assert read_tag({"metadata": {"dh": {"exercise": "quickshot"}}}).exercise == "quickshot"
+    for metadata in ({}, {"dh": 3}, {"dh": {"exercise": ["x"]}}, {"dh": {"exercise": "x" * 1000}}, None):
+        assert read_tag({"metadata": metadata}).exercise == ""
+    assert read_tag({}).student == ""
+
+
+def test_a_tag_that_was_altered_or_made_with_another_key_is_not_believed():
+    tag = make_tag(KEY, "quickshot", "s1", "2030-01-31")
+    notebook = {"metadata": {"dh": as_metadata(tag)}}
+    check_tag(read_tag(notebook), KEY)
+    assert KEY.hex() not in json.dumps(notebook)
+    with pytest.raises(NotAssigned, match="another key"):
+        check_tag(tag, KEY[::-1])
+    for field, value in {"student": "s2", "due": "2031-01-31", "exercise": "planar", "seal": "ä"}.items():
+        altered = {"metadata": {"dh": {**as_metadata(tag), field: value}}}
+        with pytest.raises(NotAssigned, match="altered"):
+            check_tag(read_tag(altered), KEY)
+    with pytest.raises(NotAssigned, match="no notebook that was assigned"):
+        check_tag(read_tag({"metadata": {"dh": {"exercise": "quickshot"}}}), KEY)
