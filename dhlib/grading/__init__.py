@@ -9,12 +9,14 @@ Imports run one way, and the two halves never meet in one process when strangers
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from dhlib.grading.check import Checker
+    from collections.abc import Mapping
 
-__all__ = ["checker"]
+    from dhlib.grading.check import Checker, FormChecker
+
+__all__ = ["checker", "form_checker"]
 
 
 def checker(name: str, exercises: str | None = None) -> Checker:
@@ -45,3 +47,27 @@ def checker(name: str, exercises: str | None = None) -> Checker:
     from dhlib.grading.check import Checker
 
     return Checker(name, exercises)
+
+
+def form_checker(name: str, forms: Mapping[str, Mapping[str, Any]]) -> FormChecker:
+    """The function ``check(part, answer)`` of a notebook that a course grades: it says of the form alone what is wrong.
+
+    Parameters
+    ----------
+    name : str
+        Of the exercise.
+    forms : mapping
+        Part to its form, as the notebook states it.
+
+    Returns
+    -------
+    FormChecker
+
+    Examples
+    --------
+    >>> form_checker("quickshot", {"slip": {"form": "choice", "options": ["n_x", "n_y"]}})("slip", "n_y")
+    slip: the form is right, one of n_x, n_y. The course will say whether the answer is.
+    """
+    from dhlib.grading.check import FormChecker
+
+    return FormChecker(name, forms)

@@ -157,7 +157,11 @@ def main(arguments: list[str] | None = None) -> int:
                 drifted.append(path)
             else:
                 path.write_text(text, encoding="utf-8")
-                print(f"derived {path}" if path == target else f"{path} has other numbers: run it again")
+                print(
+                    f"derived {path}"
+                    if path == target
+                    else f"wrote the given cells of {path}: make solutions runs it again"
+                )
     for path in drifted:
         why = "what its solution gives" if path.parent == options.exercises else "what its exercise's file gives"
         print(f"{path} is not {why}: run make exercises.", file=sys.stderr)

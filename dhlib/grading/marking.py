@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from dhlib.grading import formal
 from dhlib.grading.exercise import Exercise, Part
-from dhlib.grading.faults import MISSING, sentence, shape_text
-from dhlib.grading.forms import Choice, Formula, Frames, Function, Numbers, ReasonedChoice, Table, Valued
+from dhlib.grading.faults import MISSING, sentence
+from dhlib.grading.forms import Choice, Formula, Frames, Numbers, ReasonedChoice, Table, Valued
 from dhlib.grading.frames import judge_frames
 from dhlib.grading.marks import COARSE, FOLLOWS, NEARLY, OPEN, REASONED, RIGHT, UNREADABLE, WRONG, Mark, make_mark
 from dhlib.grading.misconceptions import KNOWN, name_one, would_have_given
@@ -139,29 +140,7 @@ def wanted(part: Part) -> str:
     >>> wanted(load_exercise("quickshot").part("A1"))
     'a matrix of 4 rows and 4 columns'
     """
-    match part.asks:
-        case ReasonedChoice():
-            letters = list(part.asks.reasons)
-            return f"one of {', '.join(part.asks.options)} and then letters from {letters[0]} to {letters[-1]}"
-        case Choice():
-            return f"one of {', '.join(part.asks.options)}"
-        case Table():
-            return f"a DH table with {part.chain.n} rows"
-        case Frames():
-            return f"a list of {part.asks.count} matrices of 4 by 4"
-        case Function():
-            return f"a function {part.asks.signature} that returns {_array_text(part.asks.shape)}"
-        case Formula():
-            return f"{_array_text(part.asks.shape, 'formula')} in {', '.join(part.asks.symbols)}"
-        case Numbers():
-            return _array_text(part.asks.shape)
-    raise AssertionError(part.asks)
-
-
-def _array_text(shape: tuple[int, ...], one: str = "number") -> str:
-    if not shape:
-        return f"one {one}"
-    return f"a vector of {shape_text(list(shape))}" if len(shape) == 1 else f"a matrix of {shape_text(list(shape))}"
+    return formal.wanted(formal.outline(part))
 
 
 # Validating

@@ -18,6 +18,7 @@ from types import ModuleType
 from typing import Any
 
 from dhlib.errors import DHError
+from dhlib.grading.course.editions import HOW, how_to
 from dhlib.grading.course.lots import Lots
 from dhlib.grading.exercise import Exercise, find_exercise, load_module
 
@@ -92,14 +93,15 @@ class Variants:
         module: Any = self._module
         if key is None or student is None:
             given = module.cells(module.DEFAULT) if hasattr(module, "cells") else {}
-            return Variant(module.EXERCISE, given)
+            return Variant(module.EXERCISE, {HOW: how_to(module.EXERCISE), **given})
         if not self.vary:
             raise DHError(
                 f"the exercise {self.name} has no numbers to draw: {self.path} should offer draw(lots), "
                 "exercise(given) and cells(given)."
             )
         drawn = module.draw(Lots(key, student, self.name))
-        return Variant(module.exercise(drawn), module.cells(drawn))
+        exercise = module.exercise(drawn)
+        return Variant(exercise, {HOW: how_to(exercise), **module.cells(drawn)})
 
 
 def fill(notebook: dict[str, Any], given: Mapping[str, str]) -> None:
@@ -121,5 +123,6 @@ def fill(notebook: dict[str, Any], given: Mapping[str, str]) -> None:
         source = left.pop(part)
         if "".join(cell["source"]) != source:
             cell["source"] = source.splitlines(keepends=True)
+    left.pop(HOW, None)
     if left:
         raise DHError(f"there is no given cell for {', '.join(left)}: add one, or take it out of cells(given).")
