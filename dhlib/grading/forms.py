@@ -67,6 +67,8 @@ class Valued:
     means : callable, optional
         What one value stands for, where different values stand for the same: of joint values, the pose that they
         lead to. What is meant is then compared, to `tolerance`.
+    each : str
+        What a row is, such as ``"line"``, so that a wrong one can be named.
     """
 
     quantity: Quantity
@@ -74,6 +76,7 @@ class Valued:
     tolerance: float = 1e-6
     length_tolerance: float = 1e-3
     means: Callable[[FloatArray], FloatArray] | None = None
+    each: str = ""
 
     kind: ClassVar[str] = ""
 

@@ -52,6 +52,9 @@ def describe(asks: Valued, values: FloatArray, right: FloatArray, unit: str) -> 
     where = ""
     if len(values) > 1 and (fine := int(np.sum(~off.reshape(len(values), -1).any(axis=1)))) > 0:
         where = f" At {fine} of {len(values)} sets of joint angles tried it is right, at the others it is not."
+    if asks.each:
+        rows = [str(k + 1) for k in np.flatnonzero(off.reshape(len(off), off.shape[1], -1).any(axis=(0, 2)))]
+        return f"{asks.each.capitalize()} {listed(rows)} {'is' if len(rows) == 1 else 'are'} not right yet.{where}"
     if asks.means is not None:
         return f"These values do not lead where they should.{where}"
     if asks.shape == (4, 4):

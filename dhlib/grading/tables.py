@@ -200,8 +200,8 @@ def _same_arm(part: Part, asks: Table, verdict: Sameness, reference: Chain, slip
     remarks = [f"{_joints(turned)} counting the other way"] if turned else []
     remarks += [f"{_joints(shifted)} counting from another zero"] if shifted else []
     if not remarks:
-        return make_mark(part, RIGHT, "It is another table than that of the book, of the same arm.")
-    return make_mark(part, RIGHT, f"It is the arm of the book, with {' and '.join(remarks)}: choices that are yours.")
+        return make_mark(part, RIGHT, "Your numbers differ from ours; the arm is the same.")
+    return make_mark(part, RIGHT, f"It is this arm, with {' and '.join(remarks)}: choices that are yours.")
 
 
 def _with_degrees(part: Part, answer: Chain, reference: Chain) -> Mark:

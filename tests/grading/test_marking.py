@@ -117,7 +117,10 @@ def mutations(values):
 def test_no_changed_answer_passes(every):
     for part in every.parts:
         if isinstance(part.asks, Valued):
-            for changed in islice(mutations(part.asks.values(part.chain)), 0, None, 5):
+            right = part.asks.values(part.chain)
+            for changed in islice(mutations(right), 0, None, 5):
+                if np.allclose(part.asks.meaning(changed), part.asks.meaning(right), atol=1e-9):
+                    continue  # such as another point of the same line
                 assert not mark(part, {"values": changed.tolist()}).passed, part.id
 
 
