@@ -41,6 +41,7 @@ def execute(notebook: dict[str, Any], folder: str | Path = ".") -> dict[str, Any
         timeout=SECONDS,
         kernel_name="python3",
         record_timing=False,
+        coalesce_streams=True,
         resources={"metadata": {"path": str(folder)}},
     )
     try:
