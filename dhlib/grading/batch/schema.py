@@ -73,4 +73,33 @@ MIGRATIONS: tuple[str, ...] = (
         details TEXT NOT NULL
     );
     """,
+    # What the instructor decides stands beside what was marked, and names no submission: grading again leaves it alone.
+    """
+    CREATE TABLE adjustment (
+        id INTEGER PRIMARY KEY,
+        exercise TEXT NOT NULL,
+        student TEXT NOT NULL,
+        part TEXT NOT NULL,              -- '' for points beside the parts
+        points REAL NOT NULL,            -- of the part, or added beside the parts
+        reason TEXT NOT NULL,
+        at TEXT NOT NULL,
+        by TEXT NOT NULL,
+        revoked_at TEXT NOT NULL,        -- '' while it holds
+        revoked_by TEXT NOT NULL
+    );
+    CREATE INDEX adjustment_student ON adjustment (student, exercise);
+    CREATE TABLE rule (
+        id INTEGER PRIMARY KEY,
+        exercise TEXT NOT NULL,          -- '' for all
+        student TEXT NOT NULL,           -- '' for all
+        due TEXT NOT NULL,               -- ISO 8601 in UTC, or '' to leave the due time as it is
+        late TEXT NOT NULL,              -- what being late costs, or '' to leave that as it is
+        grace TEXT NOT NULL,
+        reason TEXT NOT NULL,
+        at TEXT NOT NULL,
+        by TEXT NOT NULL,
+        revoked_at TEXT NOT NULL,
+        revoked_by TEXT NOT NULL
+    );
+    """,
 )

@@ -1,0 +1,128 @@
+"""The page that a student gets back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from markupsafe import Markup
+
+from dhlib.errors import DHError
+from dhlib.grading.exercise import Exercise, Part
+from dhlib.grading.marks import FOLLOWS, HEADLINES, NEARLY, OPEN, RIGHT, UNREADABLE, WRONG
+from dhlib.grading.reports.book_links import link, named
+from dhlib.grading.reports.comments import signed
+from dhlib.grading.reports.pages import drawn, render
+from dhlib.grading.reports.picture import picture
+from dhlib.grading.reports.records import Answer, Record
+from dhlib.grading.reports.shape import Shown, show
+
+#: Verdicts in black and white, for those who do not see the colours.
+SIGNS = {RIGHT: "✓", FOLLOWS: "✓", NEARLY: "≈", WRONG: "✗", OPEN: "○", UNREADABLE: "?"}
+
+Find = Callable[[Record], Exercise | None]
+"""The exercise that a record is of, as it was given to this student; None if it cannot be found."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """What the template needs of a mark."""
+
+    id: str
+    title: str
+    points: float
+    out_of: float
+    message: str
+    verdict_class: str
+
+
+@dataclass(frozen=True)
+class Told:
+    """A part as the page tells it."""
+
+    row: Row
+    answer: Answer
+    headline: str
+    sign: str
+    heading: str
+    chapter: str
+    link: str
+    shown: Shown | None
+    drawing: Markup | None
+
+
+def feedback_page(record: Record, find: Find, book: str = "", reveal: bool = False) -> str:
+    """A page for one student, which needs nothing else.
+
+    Parameters
+    ----------
+    record : Record
+    find : callable
+        Finds the exercise; where it finds none, the page has the marks and no pictures.
+    book : str
+        Address of the book, for links to its sections.
+    reveal : bool
+        Whether to show what would have been right.
+
+    Returns
+    -------
+    str
+        HTML, in which whatever the student wrote is text.
+    """
+    exercise = find(record)
+    styles: list[str] = []
+    parts = [_told(answer, exercise, book, reveal, styles) for answer in record.answers]
+    return render(
+        "feedback.html",
+        "".join(dict.fromkeys(styles)),
+        record=record,
+        title=exercise.title if exercise else record.exercise or "Exercise",
+        parts=parts,
+        signed=signed,
+    )
+
+
+def _told(answer: Answer, exercise: Exercise | None, book: str, reveal: bool, styles: list[str]) -> Told:
+    row = answer.row
+    part = _part(exercise, row.part)
+    reading: Any = None if answer.passed or part is None else row.reading
+    drawing = None
+    if part is not None and reading is not None and (sketch := picture(part, reading)):
+        drawing, style = drawn(sketch)
+        styles.append(style)
+    heading, chapter = named(row.section)
+    verdict = row.verdict if row.verdict in HEADLINES else UNREADABLE
+    return Told(
+        Row(row.part, row.title, row.points, row.out_of, row.message, verdict),
+        answer,
+        HEADLINES[verdict],
+        SIGNS[verdict],
+        heading,
+        chapter,
+        link(book, row.section),
+        show(part, reading, reveal) if part is not None and reading is not None else None,
+        drawing,
+    )
+
+
+def _part(exercise: Exercise | None, name: str) -> Part | None:
+    try:
+        return exercise.part(name) if exercise else None
+    except DHError:  # the exercise was changed since
+        return None
+
+
+def finder(folder: Any = None) -> Find:
+    """Finds exercises by their names, each once."""
+    from dhlib.grading.exercise import load_exercise
+
+    @cache
+    def load(name: str) -> Exercise | None:
+        try:
+            return load_exercise(name, folder)
+        except DHError:
+            return None
+
+    return lambda record: load(record.exercise)
