@@ -1,0 +1,231 @@
+"""Behind both walls: run a notebook cell by cell, with a process kept before each as a place to go back to.
+
+Two kinds of process, both in namespaces of their own:
+
+* the *keeper*, the first process there, runs no code of the student. It says which cell is next, kills what takes too
+  long, and tells the controller. Nothing in its namespaces can signal or trace it.
+* a *state* holds the variables of the notebook. To run a cell it forks, and waits: the child runs the cell. If the
+  child dies, the state goes on without that cell; otherwise the child is the new state, and the keeper ends the old
+  one. An answer is read in a child that ends afterwards, so that reading changes nothing.
+
+A state has run the student's code, and all it says may be a lie. The keeper believes only what the kernel certifies,
+the number of the process that speaks, and relies on it for nothing but the student's own marks.
+"""
+
+from __future__ import annotations
+
+import array
+import contextlib
+import json
+import os
+import select
+import signal
+import socket
+import struct
+import time
+from collections.abc import Sequence
+from typing import Any
+
+from dhlib.grading.wall.shell import read_part, run_cell
+
+#: How long a cell may take beyond its time to stop by itself, and a state to say that a cell has ended.
+GRACE = 0.5
+LONGEST_COMMAND = 1 << 20
+LONGEST_REPORT = 200
+MOST_REPORTS = 10_000
+
+CREDENTIALS = struct.Struct("iII")
+
+
+class Lost(Exception):
+    """The notebook cannot go on."""
+
+
+def channel() -> tuple[socket.socket, socket.socket]:
+    """A pair of sockets, for the keeper and the states; the keeper's end says which process speaks."""
+    keeper, states = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    keeper.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
+    keeper.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, LONGEST_COMMAND)
+    return keeper, states
+
+
+class Keeper:
+    """Leads the states through a job.
+
+    Parameters
+    ----------
+    job : dict
+        ``{"cells": [{"source", "role", "part"}, …], "requests": {part: request}}``.
+    limits : dict
+        With ``cell_seconds``.
+    shell
+        Pristine; only states use it.
+    answers, notices : int
+        File descriptors: what states say to the controller, and what the keeper does.
+    """
+
+    def __init__(self, job: dict[str, Any], limits: dict[str, Any], shell: Any, answers: int, notices: int) -> None:
+        self.job, self.shell = job, shell
+        self.seconds = float(limits["cell_seconds"])
+        self.answers, self.notices = answers, notices
+        self.reports = 0
+
+    def run(self, ends: tuple[socket.socket, socket.socket]) -> None:
+        """Run all cells; return when there is nothing more to run."""
+        self.socket, theirs = ends
+        cells = self.job["cells"]
+        # What is asked about the answers stays here until it is: a cell need not know.
+        asked = [self.job["requests"].get(c["part"]) if c["role"] == "check" else None for c in cells]
+        state = os.fork()
+        if state == 0:
+            del self.job
+            self.socket.close()
+            os.close(self.notices)
+            live(theirs, cells, self.shell, self.answers, self.seconds)
+        theirs.close()
+        try:
+            for k, request in enumerate(asked):
+                state = self._step(k, request, state)
+        except Lost as lost:
+            self._notice(lost=str(lost))
+        else:
+            self._notice(done=True)
+
+    def _step(self, k: int, request: Any, state: int) -> int:
+        """Run cell k from a state; return the next state."""
+        self._send({"run": k, "request": request})
+        deadline = time.monotonic() + self.seconds + GRACE
+        runner = 0
+        while True:
+            pid, said = self._hear(deadline)
+            if pid == 0:  # time is up
+                if not runner or not self._kill(runner, k, state):
+                    raise Lost("a cell could not be stopped")
+                self._notice(killed=k, how="time")
+                return state
+            if pid == state and said == ["died", k]:
+                self._notice(killed=k, how="died")
+                self._sweep(runner)
+                return state
+            if pid == state and said == ["read", k] and request is not None:
+                return state
+            if said == ["begin", k] and not runner and pid != state:
+                runner = pid
+            elif said == ["done", k] and pid == runner and request is None:
+                os.kill(state, signal.SIGKILL)
+                self._reap()
+                return runner
+
+    def _kill(self, runner: int, k: int, state: int) -> bool:
+        """End a cell; whether the state before it can go on."""
+        self._sweep(runner)
+        deadline = time.monotonic() + GRACE
+        while True:
+            pid, said = self._hear(deadline)
+            if pid == 0:
+                return False
+            if pid == state and said in (["died", k], ["read", k]):
+                return True
+
+    def _sweep(self, runner: int) -> None:
+        """Kill a process and its group."""
+        for kill in (os.kill, os.killpg):
+            with contextlib.suppress(OSError):
+                if runner > 1:
+                    kill(runner, signal.SIGKILL)
+        self._reap()
+
+    def _reap(self) -> None:
+        with contextlib.suppress(ChildProcessError):
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+
+    def _send(self, command: Any) -> None:
+        data = json.dumps(command).encode()
+        if len(data) > LONGEST_COMMAND // 2:
+            raise Lost("a question is too long")
+        while True:
+            if not select.select([], [self.socket], [], GRACE)[1]:
+                raise Lost("a cell does not listen")
+            try:
+                self.socket.send(data, socket.MSG_DONTWAIT)
+                return
+            except BlockingIOError:
+                raise Lost("a cell does not listen") from None
+            except OSError:
+                raise Lost("the program of the notebook ended") from None
+
+    def _hear(self, deadline: float) -> tuple[int, Any]:
+        """The next report and the process it is from; (0, None) after the deadline."""
+        while (left := deadline - time.monotonic()) > 0:
+            if not select.select([self.socket], [], [], min(left, 1.0))[0]:
+                continue
+            data, extra, _, _ = self.socket.recvmsg(LONGEST_REPORT, 512, socket.MSG_DONTWAIT)
+            self.reports += 1
+            if self.reports > MOST_REPORTS:
+                raise Lost("it sent reports without end")
+            pid = 0
+            for level, kind, value in extra:
+                if level == socket.SOL_SOCKET and kind == socket.SCM_CREDENTIALS:
+                    pid = CREDENTIALS.unpack(value[: CREDENTIALS.size])[0]
+                elif level == socket.SOL_SOCKET and kind == socket.SCM_RIGHTS:
+                    received = array.array("i")
+                    received.frombytes(value[: len(value) - len(value) % received.itemsize])
+                    for fd in received:
+                        os.close(fd)
+            if not data:
+                raise Lost("the program of the notebook ended")
+            if pid > 1:
+                with contextlib.suppress(ValueError, RecursionError):
+                    return pid, json.loads(data)
+        return 0, None
+
+    def _notice(self, **notice: Any) -> None:
+        os.write(self.notices, json.dumps(notice).encode() + b"\n")
+
+
+def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, answers: int, seconds: float) -> None:
+    """A state: run the cells that the keeper names, each in a child that becomes the next state. Never returns."""
+    # Names of its own for all it needs: a cell may put anything else in place of what modules hold.
+    fork, wait, leave, own, group = os.fork, os.waitpid, os._exit, os.getpid, os.setpgid
+    load, dump = json.loads, json.dumps
+
+    def report(word: str, k: int) -> None:
+        channel.send(dump([word, k]).encode())
+
+    def answer(message: dict[str, Any]) -> None:
+        data = dump(message, allow_nan=False).encode() + b"\n"
+        while data:
+            data = data[os.write(answers, data) :]
+
+    me = own()
+    try:
+        while True:
+            command = channel.recv(LONGEST_COMMAND)
+            if own() != me or not command:  # a copy that a cell made of itself
+                leave(0)
+            child = fork()
+            if child:
+                asked = load(command)
+                status = wait(child, 0)[1]
+                report("read" if asked["request"] is not None and status == 0 else "died", asked["run"])
+                continue
+            me = own()
+            group(0, 0)
+            asked = load(command)
+            k = asked["run"]
+            report("begin", k)
+            if asked["request"] is not None:
+                part = cells[k]["part"]
+                answer({"part": part, "reading": read_part(shell, part, asked["request"], seconds)})
+                leave(0)
+            error = run_cell(shell, cells[k]["source"], seconds)
+            if own() != me:
+                leave(0)
+            if error is not None:
+                answer({"cell": k, "error": error})
+            report("done", k)
+    except BaseException:
+        leave(1)
+    finally:
+        leave(1)

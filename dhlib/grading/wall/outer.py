@@ -1,0 +1,180 @@
+"""The outer wall: what stands between the box of a worker and the machine.
+
+bubblewrap where it runs; else a container of podman or docker; else a refusal that says what to install.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from dhlib.errors import DHError
+from dhlib.grading.wall.inner import HOME, NOBODY
+from dhlib.grading.wall.limits import MIB
+from dhlib.grading.wall.view import DEVICES, View, view
+
+#: Names the image that containers start from, where one of ours was built.
+IMAGE = os.environ.get("DHLIB_IMAGE", "dhlib-grade")
+SERVER = "dhlib.grading.wall.server"
+PROBE_SECONDS = 30.0
+#: Files of the server itself, such as the cache of matplotlib.
+SERVER_DISK = 64 * MIB
+
+UNSAFE = "--unsafe-no-sandbox grades without it, which is for your own notebooks only."
+REMEDY = (
+    "Strangers' notebooks need a sandbox, and this machine has none that works. {why} "
+    "Install bubblewrap (Debian and Ubuntu: apt install bubblewrap; Fedora: dnf install bubblewrap), or podman or "
+    f"docker with the image of the Containerfile. {UNSAFE} "
+    "`dhlib grade --doctor` says what is missing."
+)
+
+
+@dataclass(frozen=True)
+class Outer:
+    """An outer wall that was seen to stand.
+
+    Parameters
+    ----------
+    name : str
+    command : callable
+        A view to the command that starts the server behind this wall; its standard input is the socket.
+    spaces : bool
+        Whether namespaces can be made within it. Where not, it is built anew for every submission.
+    user : int
+        Which user the server becomes; 0 to stay.
+    """
+
+    name: str
+    command: Callable[[View], list[str]]
+    spaces: bool = True
+    user: int = 0
+
+
+def start_python(seen: View) -> list[str]:
+    """The interpreter, without the user's settings; what it can import is named, not found."""
+    code = f"import sys; sys.path[:] = {seen.path!r}; import runpy; runpy.run_module({SERVER!r}, run_name='__main__')"
+    return [seen.python, "-I", "-S", "-c", code]
+
+
+def environment() -> dict[str, str]:
+    """All that the server knows of the environment."""
+    return {
+        "PATH": "/nowhere",
+        "HOME": HOME,
+        "TMPDIR": HOME,
+        "IPYTHONDIR": f"{HOME}/ipython",
+        "MPLCONFIGDIR": f"{HOME}/matplotlib",
+        "MPLBACKEND": "Agg",
+        "LANG": "C.UTF-8",
+        "OMP_NUM_THREADS": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+        "MKL_NUM_THREADS": "1",
+        "PYTHONHASHSEED": "0",
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
+
+
+def bubblewrap(seen: View, root: bool) -> list[str]:
+    """The command line of bubblewrap, up to the program that it starts."""
+    words = ["bwrap", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try"]
+    if root:  # a real root builds the wall itself, and the server becomes nobody
+        words += ["--cap-drop", "ALL", "--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID"]
+    else:
+        words += ["--unshare-user"]
+    words += ["--die-with-parent", "--new-session", "--as-pid-1", "--hostname", "box", "--clearenv"]
+    for name, value in environment().items():
+        words += ["--setenv", name, value]
+    words += ["--size", str(SERVER_DISK), "--perms", "1777", "--tmpfs", HOME]
+    for folder in sorted({str(parent) for _, place in seen.shown for parent in Path(place).parents} - {"/"} | {"/dev"}):
+        words += ["--perms", "0755", "--dir", folder]
+    for name in DEVICES:
+        words += ["--dev-bind", f"/dev/{name}", f"/dev/{name}"]
+    for source, place in seen.shown:
+        words += ["--ro-bind", source, place]
+    for place in seen.emptied:
+        words += ["--size", "4096", "--tmpfs", place, "--remount-ro", place]
+    return [*words, "--proc", "/proc", "--remount-ro", "/", "--chdir", HOME, "--"]
+
+
+def container(program: str, words: list[str]) -> list[str]:
+    """The command line of podman or docker, up to the program that it starts."""
+    return [
+        program, "run", "--rm", "--interactive", "--network=none", "--read-only", "--ipc=private",
+        f"--tmpfs={HOME}:rw,noexec,nosuid,size={SERVER_DISK}", "--cap-drop=ALL", "--security-opt=no-new-privileges",
+        "--pids-limit=256", "--memory=2g", f"--user={NOBODY}:{NOBODY}", f"--workdir={HOME}",
+        *(f"--env={name}={value}" for name, value in environment().items()), *words,
+    ]  # fmt: skip
+
+
+@functools.cache
+def find_outer() -> Outer:
+    """The best outer wall that stands on this machine; tried once.
+
+    Raises
+    ------
+    DHError
+        If there is none; the message says what to install.
+    """
+    why = []
+    if sys.platform == "linux":
+        root = os.geteuid() == 0
+        if reason := _why_not_bubblewrap(root):
+            why.append(reason)
+        else:
+            return Outer(
+                "bubblewrap",
+                lambda seen: [*bubblewrap(seen, root), *start_python(seen)],
+                user=NOBODY if root else 0,
+            )
+    else:
+        why.append("bubblewrap is for Linux: on this system run dhlib in a container, as README says.")
+    raise DHError(REMEDY.format(why=" ".join(why)))
+
+
+def _why_not_bubblewrap(root: bool) -> str:
+    """Empty if bubblewrap really runs here and namespaces can be made within it, else what is in the way."""
+    if not shutil.which("bwrap"):
+        return "bubblewrap is not installed."
+    seen = view()
+    code = f"import sys; sys.path[:] = {seen.path!r}; from dhlib.grading.wall import inner; "
+    code += f"inner.become({NOBODY if root else 0}); inner.own_spaces()"
+    try:
+        tried = subprocess.run(
+            [*bubblewrap(seen, root), seen.python, "-I", "-S", "-c", code],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=PROBE_SECONDS,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return "bubblewrap does not answer."
+    if tried.returncode == 0:
+        return ""
+    said = tried.stderr.decode(errors="replace").strip().splitlines()
+    return f"bubblewrap is installed and does not run here ({said[-1] if said else tried.returncode}). {_blocked()}"
+
+
+def _blocked() -> str:
+    """Which setting of the kernel is in the way, if it is one of the usual ones."""
+    for path, bad, remedy in (
+        ("/proc/sys/kernel/unprivileged_userns_clone", "0", "sysctl kernel.unprivileged_userns_clone=1"),
+        ("/proc/sys/user/max_user_namespaces", "0", "sysctl user.max_user_namespaces=10000"),
+        (
+            "/proc/sys/kernel/apparmor_restrict_unprivileged_userns",
+            "1",
+            "sysctl kernel.apparmor_restrict_unprivileged_userns=0, or an AppArmor profile for bwrap",
+        ),
+    ):
+        try:
+            with open(path, encoding="ascii") as file:
+                if file.read().strip() == bad:
+                    return f"User namespaces are switched off: as root, {remedy}."
+        except OSError:
+            continue
+    return "In a container, start it with --security-opt seccomp=unconfined --security-opt systempaths=unconfined."

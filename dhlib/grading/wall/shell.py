@@ -1,0 +1,101 @@
+"""The shell that a notebook's cells run in, and the stub that stands for `check` there."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+from collections.abc import Iterator
+from typing import Any
+
+from dhlib.grading.wall.limits import LONGEST_ERROR
+
+
+class OutOfTime(BaseException):
+    """A cell or a function took too long. Not an Exception, so that `except Exception` does not swallow it."""
+
+
+@contextlib.contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """Interrupt what runs after so many seconds, where the system has alarms.
+
+    This is for honest code, which keeps what it had done by then; who catches it is killed from outside a moment later.
+    """
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
+
+    def stop(*_: Any) -> None:
+        raise OutOfTime(f"stopped after {seconds:g} s")
+
+    signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+
+
+def handing_in(name: str, exercises: str | None = None) -> Any:
+    """In the box `checker` gives this: no verdict, since no solution is here."""
+
+    def check(part_id: str, answer: Any = None) -> None:
+        print(f"{part_id}: handed in.")
+
+    return check
+
+
+def make_shell() -> Any:
+    """An IPython shell without history, colours or a screen, in which `check` only takes answers in."""
+    os.environ["MPLBACKEND"] = "Agg"
+    from IPython.core.interactiveshell import InteractiveShell
+    from traitlets.config import Config
+
+    import dhlib.grading
+
+    config = Config()
+    config.HistoryManager.enabled = False
+    config.InteractiveShell.colors = "nocolor"
+
+    class Shell(InteractiveShell):  # type: ignore[misc, unused-ignore]
+        """A shell for which ``%matplotlib`` of any kind is fine: there is no window to open."""
+
+        def enable_gui(self, gui: Any = None) -> None:
+            """Do nothing."""
+
+    shell = Shell.instance(config=config)
+    dhlib.grading.checker = handing_in
+    return shell
+
+
+def run_cell(shell: Any, source: str, seconds: float) -> str | None:
+    """Run a cell; return the error it stopped with, if with one."""
+    try:
+        with time_limit(seconds):
+            result = shell.run_cell(source, store_history=False)
+        error = result.error_before_exec or result.error_in_exec
+    except BaseException as stopped:  # SystemExit, KeyboardInterrupt, OutOfTime between two lines
+        error = stopped
+    return None if error is None else in_words(error)
+
+
+def in_words(error: BaseException) -> str:
+    """Type and text of an error, in one line; its text may be anything, even an error of its own."""
+    try:
+        text = str(error)[:LONGEST_ERROR]
+    except BaseException:
+        text = "an error without words"
+    return f"{type(error).__name__[:LONGEST_ERROR]}: {text}"[:LONGEST_ERROR]
+
+
+def read_part(shell: Any, part: str, request: dict[str, Any], seconds: float) -> dict[str, Any]:
+    """Read the answer to a part from the variables of the shell."""
+    from dhlib.grading.answers import MISSING, read_answer
+
+    try:
+        with time_limit(seconds):
+            return read_answer(request, shell.user_ns.get(part, MISSING))
+    except OutOfTime:
+        return {"fault": "timeout"}
+    except BaseException as error:  # SystemExit from within the student's function
+        return {"fault": "raised", "type": type(error).__name__[:LONGEST_ERROR], "text": in_words(error)}
