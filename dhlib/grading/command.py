@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any
 
 from dhlib.errors import DHError
 from dhlib.grading.course.keys import read_key
 from dhlib.grading.grade import FAILED, GRADED, Result, grade_notebook
-from dhlib.grading.wall import Limits
+from dhlib.grading.wall import Limits, Sandbox
+from dhlib.grading.wall.limits import UNSAFE
 
 DESCRIPTION = """\
 Grade notebooks: put the answers of each into the pristine exercise, run it in a process of its own, mark the answers,
 and write grades.csv and a feedback page for each notebook into a folder.
 
-This is no sandbox: a notebook may read and write whatever you may, and use the network. Grade only notebooks of people
-you trust, or on a machine that holds nothing of worth."""
+Notebooks run in a sandbox: no network, no files but their own, bounded time, memory and processes, and never beside the
+reference. `dhlib grade --doctor` says which walls stand on this machine, and tries each."""
 
 EPILOG = """\
 Exit code: 0 if every notebook was graded; 1 if some could not be read or were stopped (grades.csv says which and why);
@@ -45,7 +48,29 @@ def add_grade(commands: Any) -> None:
     parser.add_argument("--key", type=Path, metavar="FILE", help="of the course, for notebooks that were assigned")
     parser.add_argument("--timeout", type=_positive, default=60.0, metavar="S", help="seconds for a notebook (60)")
     parser.add_argument("--workers", type=_count, default=os.cpu_count() or 1, metavar="N", help="notebooks at a time")
+    add_walls(parser)
     parser.set_defaults(run=grade)
+
+
+def add_walls(parser: argparse.ArgumentParser) -> None:
+    """Add what concerns the sandbox."""
+    parser.add_argument(
+        "--unsafe-no-sandbox",
+        dest="unsafe",
+        action="store_true",
+        help="run notebooks as yourself, with all that you may do: for your own notebooks only",
+    )
+    parser.add_argument("--doctor", action=Doctor, nargs=0, help="say which walls stand on this machine, and try each")
+
+
+class Doctor(argparse.Action):
+    """Look at the walls, and leave."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        """Print the findings; the exit code is 1 if a wall that strangers need does not stand."""
+        from dhlib.grading.wall.doctor import look
+
+        parser.exit(0 if look(sys.stdout) else 1)
 
 
 def grade(options: argparse.Namespace) -> int:
@@ -97,17 +122,26 @@ def _grade_all(paths: Sequence[Path], options: argparse.Namespace) -> Iterator[R
     key = read_key(options.key) if options.key else None
     import sympy  # noqa: F401  before the threads: one that finds it half imported would fail
 
+    if options.unsafe:
+        print(f"dhlib: {UNSAFE}", file=sys.stderr)
+    boxes: SimpleQueue[Sandbox] = SimpleQueue()  # one for each worker
+
     def grade_one(path: Path) -> Result:
+        box = boxes.get()
         try:
-            return grade_notebook(path, options.exercise, options.exercises, Limits.of(options.timeout), key=key)
+            return grade_notebook(path, options.exercise, options.exercises, sandbox=box, key=key)
         except DHError:
             raise
         except Exception as error:  # ours to mend; the others should not suffer
             return Result(
                 path, FAILED, f"The grader failed on it ({type(error).__name__}: {error}). Please report this."
             )
+        finally:
+            boxes.put(box)
 
-    with ThreadPoolExecutor(options.workers) as pool:
+    with contextlib.ExitStack() as stack, ThreadPoolExecutor(options.workers) as pool:
+        for _ in range(options.workers):
+            boxes.put(stack.enter_context(Sandbox(Limits.of(options.timeout), unsafe=options.unsafe)))
         yield from pool.map(grade_one, paths)
 
 

@@ -11,11 +11,12 @@ from typing import Any
 
 import pytest
 
+from dhlib.errors import DHError
 from dhlib.grading.check import tell
 from dhlib.grading.exercise import Part
 from dhlib.grading.grade import GRADED, Result, grade_notebook
 from dhlib.grading.marks import Mark
-from dhlib.grading.wall import Limits
+from dhlib.grading.wall import Limits, Sandbox
 
 
 class NotYet(Exception):
@@ -32,8 +33,10 @@ class GradedNotebook(pytest.File):
         """What came of it; graded when first asked for."""
         if self._result is None:
             option = self.config.option
-            limits = Limits.of(option.dh_timeout)
-            self._result = grade_notebook(self.path, option.dh_exercise, option.dh_exercises, limits, key=option.dh_key)
+            with own_box(Limits.of(option.dh_timeout)) as box:
+                self._result = grade_notebook(
+                    self.path, option.dh_exercise, option.dh_exercises, sandbox=box, key=option.dh_key
+                )
         return self._result
 
     def collect(self) -> Iterator[pytest.Item]:
@@ -72,6 +75,14 @@ class GradedPart(pytest.Item):
     def reportinfo(self) -> tuple[Path, None, str]:
         """Name the part by its title."""
         return self.path, None, f"{self.part.id}: {self.part.title} ({self.part.points:g} pt)"
+
+
+def own_box(limits: Limits) -> Sandbox:
+    """A sandbox where one can be built, else none: who runs pytest on a notebook may run the notebook too."""
+    try:
+        return Sandbox(limits)
+    except DHError:
+        return Sandbox(limits, unsafe=True)
 
 
 class Grading:

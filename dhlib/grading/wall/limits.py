@@ -8,6 +8,8 @@ from typing import Any
 MIB = 1 << 20
 #: How much of an error is kept.
 LONGEST_ERROR = 300
+#: Said wherever notebooks run without walls.
+UNSAFE = "no sandbox: these notebooks run with all that you may do. Grade only your own this way."
 
 
 @dataclass(frozen=True)

@@ -26,11 +26,11 @@ PROBE_SECONDS = 30.0
 #: Files of the server itself, such as the cache of matplotlib.
 SERVER_DISK = 64 * MIB
 
-UNSAFE = "--unsafe-no-sandbox grades without it, which is for your own notebooks only."
+WITHOUT = "--unsafe-no-sandbox grades without it, which is for your own notebooks only."
 REMEDY = (
     "Strangers' notebooks need a sandbox, and this machine has none that works. {why} "
     "Install bubblewrap (Debian and Ubuntu: apt install bubblewrap; Fedora: dnf install bubblewrap), or podman or "
-    f"docker with the image of the Containerfile. {UNSAFE} "
+    f"docker with the image of the Containerfile. {WITHOUT} "
     "`dhlib grade --doctor` says what is missing."
 )
 

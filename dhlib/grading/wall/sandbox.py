@@ -23,6 +23,7 @@ from dhlib.errors import DHError
 from dhlib.grading.notebook import Cell
 from dhlib.grading.wall.cgroup import SERVER_MEMORY, ControlGroup
 from dhlib.grading.wall.filter import compile_filter
+from dhlib.grading.wall.inner import landlock_version
 from dhlib.grading.wall.limits import LONGEST_ERROR, Limits, Outcome
 from dhlib.grading.wall.outer import Outer, find_outer
 from dhlib.grading.wall.plain import run_notebook
@@ -87,6 +88,15 @@ class Sandbox:
     def walls(self) -> str:
         """What stands around the notebooks, in a word."""
         return self._outer.name if self._outer else "none"
+
+    def extras(self) -> list[tuple[str, bool, str]]:
+        """Walls that not every machine has: their name, whether it stands, and what holds otherwise."""
+        group = self._box.group if self._box else None
+        return [
+            ("a control group bounds memory", bool(group and group.memory), "the controller watches the sum"),
+            ("a control group bounds processes", bool(group and group.processes), "a limit of the user does"),
+            ("Landlock", landlock_version() > 0, "this kernel has none; mounts alone keep files apart"),
+        ]
 
     def run(self, cells: Sequence[Cell], requests: Mapping[str, Any], limits: Limits | None = None) -> Outcome:
         """Run the cells of a merged notebook and return its answers; never raises for what the cells do.

@@ -1,0 +1,54 @@
+"""``dhlib grade --doctor``: all that should fail fails behind the walls, and does not without them."""
+
+import io
+
+import pytest
+
+from dhlib.cli import main
+from dhlib.errors import DHError
+from dhlib.grading.wall import Limits, Sandbox, doctor
+
+#: Probes that change nothing on this machine where no wall stops them. The others would take memory and processes.
+HARMLESS_WITHOUT_WALLS = (
+    "a secret file of yours cannot be read",
+    "nothing is written outside",
+    "no network: loopback",
+    "no network: UDP",
+    "no socket of this machine: abstract names",
+    "no socket of this machine: files",
+    "no process outside is seen",
+    "no process outside is signalled",
+    "no other program is started",
+    "no other identity than nobody's",
+)
+
+
+@pytest.mark.sandbox
+def test_every_wall_stands_here(walls, capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["grade", "--doctor"])
+    said = capsys.readouterr().out
+    assert left.value.code == 0, said
+    assert "✘" not in said
+    assert said.count("✔") > len(doctor.PROBES)
+    assert "Strangers' notebooks may be graded here." in said
+
+
+def test_the_same_probes_come_through_where_there_is_no_wall(monkeypatch):
+    """Negative control."""
+    probes = [probe for probe in doctor.PROBES if probe.wall in HARMLESS_WITHOUT_WALLS]
+    assert len(probes) == len(HARMLESS_WITHOUT_WALLS)
+    monkeypatch.setattr(doctor, "PROBES", probes)
+    with Sandbox(Limits.of(60), unsafe=True) as sandbox:
+        found = {wall: held for wall, held, _ in doctor.probe(sandbox)}
+    assert [wall for wall in HARMLESS_WITHOUT_WALLS if found[wall]] == []
+
+
+def test_a_machine_without_walls_is_told_what_to_install(monkeypatch):
+    def none():
+        raise DHError("install bubblewrap.")
+
+    monkeypatch.setattr("dhlib.grading.wall.sandbox.find_outer", none)
+    out = io.StringIO()
+    assert doctor.look(out) is False
+    assert "✘ no sandbox. install bubblewrap." in out.getvalue()
