@@ -34,18 +34,21 @@ endif
 export UV_PYTHON_DOWNLOADS := never
 export UV_NO_CONFIG := 1
 
-.PHONY: help book serve pdf zip test lint exercises solutions lock venv clean distclean
+.PHONY: help book serve pdf zip test lint exercises solutions lock bench bench-lock test-library links release venv clean distclean
 .DELETE_ON_ERROR:
 
 help:
 	@echo 'make book       build the book into _build/html and print its address'
 	@echo 'make pdf        print the whole book into dist/dh-book.pdf (needs Chromium)'
 	@echo 'make zip        pack the book, its notebooks and the library into dist/dh-book.zip, to read offline'
-	@echo 'make test       lint, types and all tests'
+	@echo 'make test       lint, types and all tests (FULL=1: the long parts whole)'
 	@echo 'make serve      build the book, serve it on this machine and open it'
 	@echo 'make lint       lint and types only'
 	@echo 'make exercises  derive the student notebooks from the solutions'
 	@echo 'make solutions  run the worked notebooks again, and keep their outputs'
+	@echo 'make bench      measure beside the peers, into bench/RESULTS.md (needs the network; long)'
+	@echo 'make release    wheel, site, PDF, zip and their checksums, into dist/release'
+	@echo 'make links      ask every address that the book names (needs the network)'
 	@echo 'make lock       pin the newest versions (needs the network)'
 	@echo 'make clean      remove what was built; make distclean: the tools too'
 
@@ -76,6 +79,11 @@ lint: $(READY)
 	@$(RUN) book/build/spelling.py
 	@$(BIN)/codespell book README.md CONTRIBUTING.md CHANGELOG.md dhlib tests exercises
 
+# FULL=1 runs the long parts whole, instead of seeded samples of them.
+ifdef FULL
+export DHBOOK_FULL := 1
+endif
+
 test: lint $(NODE_READY)
 	@echo '── tests ──'
 	@PYTHONPATH=book/build $(RUN) tests/machine.py
@@ -86,12 +94,34 @@ exercises: $(VENV_READY)
 
 solutions: exercises
 	@$(RUN) -m dhlib.grading.course.worked solutions/*.ipynb
+# The library alone, with the oldest or the newest of what it depends on, in an environment of its own.
+DEPENDENCIES ?= newest
+LIBRARY := .bench/library-$(DEPENDENCIES)
+RESOLUTION := $(if $(filter oldest,$(DEPENDENCIES)),lowest-direct,highest)
+test-library: $(UV_READY)
+	@echo '── the library with the $(DEPENDENCIES) dependencies ──'
+	@$(UV) venv --quiet --clear --python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" $(LIBRARY)
+	@$(UV) pip install --quiet --python $(LIBRARY) --resolution $(RESOLUTION) '.[plot]' --group library
+	@$(UV) pip list --quiet --python $(LIBRARY) | grep -E '^(numpy|sympy|matplotlib|pandas) '
+	@cd tests/dhlib && ../../$(LIBRARY)/bin/python -m pytest -q --confcutdir=. -p no:cacheprovider .
+
+links: book
+	@echo '── links to others ──'
+	@$(BIN)/jupyter-book build . --builder linkcheck --path-output _build/links
+
+release: pdf zip
+	@echo '── what a release consists of ──'
+	@$(RUN) book/build/release.py dist
+
+bench: $(READY)
+	@echo '── ours beside the peers ──'
+	@$(RUN) bench/run.py $(BENCH)
 
 clean:
 	rm -rf _build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 
 distclean: clean
-	rm -rf .venv .tools node_modules
+	rm -rf .venv .tools .bench node_modules
 
 venv: $(VENV_READY)
 
@@ -130,3 +160,6 @@ lock: $(UV_READY)
 	$(COMPILE) --group node -o requirements/node.lock
 	$(COMPILE) --override requirements/override.txt pyproject.toml --all-extras --group dev -o requirements/dev.lock
 	$(NPM) update --package-lock-only
+
+bench-lock: $(UV_READY)
+	@for peer in bench/peers/*.in; do echo "$$peer"; $(COMPILE) "$$peer" -o "$${peer%.in}.lock" || exit 1; done

@@ -1,6 +1,6 @@
 """What it costs to import each library: CPU time and memory over a bare Python.
 
-``python imports.py MODULE …`` prints one JSON object. A fresh process for each, by turns.
+``python imports.py PEER …`` prints one JSON object. A fresh process for each, by turns.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ import sys
 from statistics import median
 
 ROUNDS = 9
+#: What one imports to compute a pose, where that is not the name of the library.
+MODULES = {"pybotics": "pybotics.robot", "ikpy": "ikpy.chain", "visual_kinematics": "visual_kinematics.RobotSerial"}
 
 
 def cost(statement: str) -> tuple[float, float]:
@@ -27,7 +29,7 @@ def cost(statement: str) -> tuple[float, float]:
 def main() -> None:
     """Measure bare Python, numpy, dhlib and the peers, by turns."""
     statements = {"bare Python": "pass", "numpy": "import numpy", "dhlib": "import dhlib"}
-    statements |= {name: f"import {name}" for name in sys.argv[1:]}
+    statements |= {name: f"import {MODULES.get(name, name)}" for name in sys.argv[1:]}
     runs: dict[str, list[tuple[float, float]]] = {name: [] for name in statements}
     for statement in statements.values():
         cost(statement)

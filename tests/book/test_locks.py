@@ -13,8 +13,12 @@ import pytest
 ADDRESS = re.compile(r"https?://|\bfile:|index-url|(?<![\w.])[\w-]+(\.[\w-]+)*\.(org|com|io|net|dev|local)\b(?!\w)")
 
 
+def python_locks(root: Path) -> list[Path]:
+    return sorted([*(root / "requirements").glob("*.lock"), *(root / "bench" / "peers").glob("*.lock")])
+
+
 def locks(root: Path) -> list[Path]:
-    return [*sorted((root / "requirements").glob("*.lock")), root / "package-lock.json"]
+    return [*python_locks(root), root / "package-lock.json"]
 
 
 def without_funding(npm_lock: str) -> str:
@@ -45,7 +49,7 @@ def test_an_address_would_be_found(line: str) -> None:
 
 
 def test_every_pin_has_hashes(root: Path) -> None:
-    for lock in (root / "requirements").glob("*.lock"):
+    for lock in python_locks(root):
         text = lock.read_text("utf-8").replace("\\\n", " ")
         pins = [line for line in text.splitlines() if re.match(r"[a-z0-9]", line)]
         assert pins
