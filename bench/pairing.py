@@ -1,4 +1,4 @@
-"""Time two ways to do the same work side by side: turn and turn about, in one process, so that noise hits both alike."""
+"""Time two ways to do the same work: turn and turn about, in one process, so that noise hits both alike."""
 
 from __future__ import annotations
 
@@ -64,9 +64,7 @@ def side_by_side(
             times.append((taken[0] / our_pieces, taken[1] / peer_pieces))
     finally:
         gc.enable()
-    return Pair(
-        median(a for a, _ in times), median(b for _, b in times), median(b / a for a, b in times), rounds
-    )
+    return Pair(median(a for a, _ in times), median(b for _, b in times), median(b / a for a, b in times), rounds)
 
 
 def _warmed_up(work: Callable[[], Any]) -> int:

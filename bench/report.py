@@ -84,9 +84,10 @@ def forward(result: Result) -> list[Table]:
     return [
         Table(
             "Forward kinematics of the PUMA 560",
-            "All sixteen entries of every pose; 100 000 random joint vectors for whoever takes arrays, 5000 of them for a "
-            "loop. The columns with × say how many times as long the peer takes for one pose as `fk`, or as the compiled "
-            "form, in the same run: above 1 ours is faster, below 1 the peer is. The times of dhlib are the range over the runs.",
+            "All sixteen entries of every pose; 100 000 random joint vectors for whoever takes arrays, 5000 of them "
+            "for a loop. The columns with × say how many times as long the peer takes for one pose as `fk`, or as "
+            "the compiled form, in the same run: above 1 ours is faster, below 1 the peer is. The times of dhlib are "
+            "the range over the runs.",
             ["library", "call", "one call", "of `fk`", "many", "of `fk`", "of compiled"],
             ours + rows,
             _missing(result),
@@ -114,8 +115,9 @@ def accuracy(result: Result) -> list[Table]:
     return [
         Table(
             "Accuracy against 50 digits",
-            "Largest error of an entry of the rotation, and of a position as a part of the reach, over 500 random joint "
-            "vectors; and how many entries of 200 poses at quarter turns are left as something like 6e-17 where 0 is meant.",
+            "Largest error of an entry of the rotation, and of a position as a part of the reach, over 500 random "
+            "joint vectors; and how many entries of 200 poses at quarter turns are left as something like 6e-17 "
+            "where 0 is meant.",
             ["library", "call", "rotation", "position / reach", "crumbs"],
             list(seen.values()),
             _missing(result),
@@ -158,8 +160,8 @@ def placing(result: Result) -> list[Table]:
     return [
         Table(
             "From joint axes to a table",
-            "Random arms of six joints with one pair of neighbours of the kind named (in ‘mixed’ all five), right if the "
-            "table moves as the product of exponentials does, to 1e-6.",
+            "Random arms of six joints with one pair of neighbours of the kind named (in ‘mixed’ all five), right if "
+            "the table moves as the product of exponentials does, to 1e-6.",
             ["library", "call", *kinds, "right", "median time"],
             rows,
             _missing(result),

@@ -58,7 +58,9 @@ def ask(peer: str, program: str, *arguments: str, minutes: float = 30) -> dict[s
         check=False,
     )
     if said.returncode != 0:
-        raise NotToBeHad(f"failed: {said.stderr.strip().splitlines()[-1][:300] if said.stderr.strip() else said.returncode}")
+        raise NotToBeHad(
+            f"failed: {said.stderr.strip().splitlines()[-1][:300] if said.stderr.strip() else said.returncode}"
+        )
     found: dict[str, Any] = json.loads(said.stdout[said.stdout.index("{") :])
     return found
 
@@ -118,7 +120,12 @@ def machine() -> dict[str, Any]:
     if Path("/proc/cpuinfo").exists():
         lines = Path("/proc/cpuinfo").read_text().splitlines()
         model = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), model)
-    return {"processor": model, "cores": os.cpu_count(), "system": platform.system(), "python": platform.python_version()}
+    return {
+        "processor": model,
+        "cores": os.cpu_count(),
+        "system": platform.system(),
+        "python": platform.python_version(),
+    }
 
 
 def main() -> int:

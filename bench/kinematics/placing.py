@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from dhlib import Axis, inverse, place_frames
+from dhlib import Axis, place_frames
 from dhlib.axes import product_of_exponentials
 
 KINDS = ("skew", "intersecting", "parallel", "antiparallel", "coincident", "mixed")

@@ -55,9 +55,7 @@ def roboticstoolbox(arm: Chain) -> dict[str, Callable[[], Any]]:
     joints = sympy.symbols(f"theta1:{arm.n + 1}")
 
     def make() -> Any:
-        links = [
-            rtb.RevoluteMDH(alpha=sympy.pi / 2 * round(2 * j.alpha / np.pi), a=j.a, d=j.d) for j in arm.joints
-        ]
+        links = [rtb.RevoluteMDH(alpha=sympy.pi / 2 * round(2 * j.alpha / np.pi), a=j.a, d=j.d) for j in arm.joints]
         robot = rtb.DHRobot(links, symbolic=True)
         return sympy.Matrix(robot.fkine(joints).A).applyfunc(sympy.simplify)
 
