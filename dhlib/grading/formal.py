@@ -38,8 +38,10 @@ def form_of(part: Part) -> dict[str, Any]:
     from dhlib.grading.forms import Valued
 
     asks, form = part.asks, outline(part)
-    if isinstance(asks, Valued) and asks.shape == (4, 4) and not improper(asks.values(part.chain)):
-        form["stands_for"] = "pose"
+    if isinstance(asks, Valued) and asks.shape == (4, 4):
+        first = np.array([asks.quantity(part.chain, *asks.probes[0])], dtype=float)
+        if not improper(first):
+            form["stands_for"] = "pose"
     return form
 
 
@@ -50,7 +52,8 @@ def outline(part: Part) -> dict[str, Any]:
     asks = part.asks
     form = {name: value for name, value in asks.request().items() if name not in ("points", "calls")}
     if isinstance(asks, Function):
-        form |= {"signature": asks.signature, "calls": asks.request()["calls"][:CALLS]}
+        calls = asks.request()["calls"][:CALLS]  # rounded: the form is tried elsewhere than the answer is
+        form |= {"signature": asks.signature, "calls": [[_coarse(argument) for argument in call] for call in calls]}
     if isinstance(asks, Table):
         form["rows"] = part.chain.n
     if isinstance(asks, Frames):
@@ -148,16 +151,14 @@ def _odd_table(form: Form, table: Mapping[str, Any]) -> str:
         return f"It has {rows} row{'s' if rows != 1 else ''}; the arm has {form['rows']} joints, and each needs one."
     convention = table.get("convention") or form["convention"]
     columns = table["columns"] or " ".join(DEFAULT_COLUMNS[convention])
-    fault = ""
-    for letters in ("", "R" * form["rows"]):  # without symbols the numbers are the zeros of the joints
-        try:
-            Chain.from_table(table["rows"], columns, letters, convention)
-        except DHError as error:
-            fault = fault or str(error)
-        else:
-            break
-    else:
-        return f"{fault[:1].upper()}{fault[1:]}" + ("" if fault.endswith((".", "?")) else ".")
+    # Without symbols the numbers are the zeros of the joints; which of them slide is for the marker to know.
+    letters = "" if any(isinstance(cell, str) for row in table["rows"] for cell in row) else "R" * form["rows"]
+    try:
+        chain = Chain.from_table(table["rows"], columns, letters, convention)
+        if chain.is_symbolic:
+            raise DHError("besides the variable of its own joint a row should hold numbers only, and no other symbol.")
+    except DHError as error:
+        return f"{str(error)[:1].upper()}{str(error)[1:]}"
     if convention != form["convention"]:
         return f"This chain is in the {convention} convention; asked for is a {form['convention']} table."
     return ""
@@ -171,6 +172,13 @@ def _odd_frames(form: Form, frames: np.ndarray[tuple[int, ...], np.dtype[np.floa
             return f"Frame {k}: {fault}"
     report = check_frames(frames, form["convention"], tol=5e-3)
     return "" if report else f"{report.faults[0][:1].upper()}{report.faults[0][1:]}."
+
+
+def _coarse(argument: Any) -> Any:
+    """Numbers and vectors to two decimals; a matrix stays as it is, since it would cease to be a pose."""
+    if isinstance(argument, list):
+        return argument if any(isinstance(item, list) for item in argument) else [_coarse(item) for item in argument]
+    return round(argument, 2) if isinstance(argument, float) else argument
 
 
 def _plain(text: str) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from dhlib.errors import DHError
+from dhlib.grading.closing import close_parts
 from dhlib.grading.course.papers import NotAssigned, Paper, check_tag, load_paper, read_tag
 from dhlib.grading.exercise import Exercise, find_exercise
 from dhlib.grading.marking import Marker
@@ -104,7 +105,7 @@ def grade_notebook(
     if paper is None:
         return Result(path, UNREADABLE, f"{path.name} does not say which exercise it is; name it with --exercise NAME.")
     exercise = paper.exercise
-    cells = merge(paper.cells, submission)
+    cells = close_parts(merge(paper.cells, submission), exercise)
     requests = {part.id: part.asks.request() for part in exercise.parts}
     with contextlib.ExitStack() as stack:
         sandbox = sandbox or stack.enter_context(Sandbox())

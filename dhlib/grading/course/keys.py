@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import re
 import secrets
 import stat
 import subprocess
 from pathlib import Path
+from typing import Any
 
 from dhlib.errors import DHError
 from dhlib.grading.course.lots import digest
@@ -102,3 +104,22 @@ def _in_git(path: Path) -> bool:
     except OSError:
         return False
     return done.returncode == 0
+
+
+def add_key(commands: Any) -> None:
+    """Add ``key`` to the commands of the parser."""
+    parser = commands.add_parser(
+        "key",
+        help="make the key of a course",
+        description="Make the key of a course: it decides which student gets which numbers. Keep a copy where only you "
+        "can read it. Who has the key can compute all answers; without it no notebook that was assigned with it can be "
+        "graded.",
+    )
+    parser.add_argument("path", type=Path, metavar="NEW", help="the file to write, such as course.key")
+    parser.set_defaults(run=_run)
+
+
+def _run(options: argparse.Namespace) -> int:
+    path = make_key(options.path)
+    print(f"{path}: the key of the course. Keep a copy where only you can read it, and out of git.")
+    return 0
