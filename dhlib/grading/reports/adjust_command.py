@@ -116,7 +116,7 @@ def _check_part(store: Store, student: str, exercise: str, options: argparse.Nam
     if not options.part or options.points is None:
         raise DHError("--part and --points belong together: the points that this part has.")
     rows = store.query(
-        "SELECT DISTINCT part, out_of FROM mark JOIN submission ON submission.id = mark.submission "
+        "SELECT DISTINCT part, mark.out_of FROM mark JOIN submission ON submission.id = mark.submission "
         "WHERE exercise = ? ORDER BY position",
         (exercise,),
     )

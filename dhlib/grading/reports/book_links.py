@@ -18,6 +18,7 @@ PAGES = {
     "PUMA 560: one arm, five tables": "puma560",
     "Mitsubishi PA10: seven joints and six": "pa10",
     "Prismatic joints": "prismatic",
+    "From a data sheet or a URDF to a DH table": "data_sheet",
 }
 
 

@@ -52,6 +52,11 @@ class Told:
     shown: Shown | None
     drawing: Markup | None
 
+    @property
+    def brief(self) -> bool:
+        """Whether a line says all."""
+        return self.answer.passed and not self.row.message
+
 
 def feedback_page(record: Record, find: Find, book: str = "", reveal: bool = False) -> str:
     """A page for one student, which needs nothing else.

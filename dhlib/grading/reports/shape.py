@@ -20,6 +20,8 @@ from dhlib.table import DEFAULT_COLUMNS
 #: More rows or columns are no table that anybody reads.
 MOST = 24
 LONGEST_CELL = 60
+#: What a chain that was handed in as a table says of a joint without an offset.
+NO_OFFSET = " + (0.0)"
 SAME, DIFFERS = "same", "differs"
 
 
@@ -218,7 +220,7 @@ def _table(part: Part, asks: Table, reading: Mapping[str, Any], reveal: bool) ->
 
 def _cell(value: Any) -> str:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        return str(value)[:LONGEST_CELL]
+        return str(value)[:LONGEST_CELL].removesuffix(NO_OFFSET)
     return number_text(float(value)) if abs(value) < 1e300 else "–"
 
 

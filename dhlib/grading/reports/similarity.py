@@ -18,6 +18,8 @@ from dhlib.grading.reports.records import Answer, Record
 
 #: A wrong answer that more students share is common, and tells nothing.
 RARE = 3
+#: Misconceptions that say what is wrong, but not what it would have given.
+UNEXPLAINED = ("", "improper")
 #: Digits to which numbers are compared: those of two different hands differ before.
 DIGITS = 6
 #: Pairs that are shown.
@@ -64,7 +66,7 @@ def alike(records: Sequence[Record]) -> list[Alike]:
             if answer.row.verdict not in (WRONG, NEARLY):
                 continue
             wrong[k] += 1
-            if not answer.row.misconception and (told := fingerprint(answer.row.reading)):
+            if answer.row.misconception in UNEXPLAINED and (told := fingerprint(answer.row.reading)):
                 owners[answer.row.part, told].append((k, answer))
     shared: dict[tuple[int, int], list[Shared]] = defaultdict(list)
     for (part, _), given in owners.items():

@@ -1,0 +1,328 @@
+"""Feedback and class pages: what stands in them, and that nothing in them can run."""
+
+import json
+import random
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dhlib.errors import DHError
+from dhlib.grading.reports.book_links import PAGES, link, read_address
+from dhlib.grading.reports.class_page import class_page
+from dhlib.grading.reports.decisions import Adjustment, Rule, adjust, set_rule
+from dhlib.grading.reports.feedback import feedback_page
+from dhlib.grading.reports.pages import policy
+from dhlib.grading.reports.picture import picture
+from dhlib.grading.reports.records import read_results, renamed
+from dhlib.grading.reports.shape import show
+from dhlib.grading.sections import CHAPTERS
+
+from .conftest import ROOT, exercise, hand_in, marked, odd, right, submission
+
+INJECTIONS = (
+    "<script>document.title = 'ran'</script>",
+    "<img src=x onerror=\"document.title = 'ran'\">",
+    '"><svg onload="document.title = \'ran\'">',
+    "' onmouseover='document.title = 1' x='",
+    "</style><style>body { display: none }</style>",
+    "</title><script>document.title = 'ran'</script>",
+    "<a href=\"javascript:document.title = 'ran'\">x</a>",
+    '<meta http-equiv=refresh content="0;url=http://evil.invalid">',
+    "<iframe srcdoc=\"<script>parent.document.title = 'ran'</script>\"></iframe>",
+    "{{ 7 * 7 }}{% raw %}",
+    "<!-- -->]]>\u202e\u0000&lt;",
+)
+ALL = " ".join(INJECTIONS)
+
+
+def find(record):
+    return exercise()
+
+
+@pytest.fixture(scope="module")
+def hostile_rows():
+    """Marks of somebody who put markup everywhere a student can put text."""
+    readings = hand_in(random.Random(2), 0.3)
+    readings["table"] = {"table": {"rows": [[ALL[:90], 1.0, 2.0, 3.0]] * 4, "columns": [ALL[:50], "d", "a", "alpha"]}}
+    readings["slip"] = {"choice": ALL[:200]}
+    readings["A1"] = {"fault": "raised", "type": ALL[:200], "text": ALL}
+    readings["A2"] = {"fault": "symbols", "names": [ALL[:200], "x"]}
+    rows = marked(readings)
+    return [replace(row, message=f"{row.message} {ALL}") for row in rows]
+
+
+@pytest.fixture
+def hostile(results, hostile_rows):
+    source = f"{ALL.replace('/', '')}/x.ipynb"
+    results.add(submission("eve", ALL, source, hostile_rows, message=ALL), hostile_rows)
+    adjust(results, Adjustment(exercise="quickshot", student="eve", part="A1", points=1, reason=ALL))
+    adjust(results, Adjustment(exercise="quickshot", student="eve", part="", points=-1, reason=ALL))
+    set_rule(results, Rule(student="eve", due="2026-11-20T20:00:00+00:00", late="10%/day", reason=ALL))
+    return read_results(results)[0]
+
+
+def tags(page):
+    return {tag.lower() for tag in re.findall(r"<\s*([a-zA-Z]\w*)", page)}
+
+
+#: Everything that a page is made of.
+HARMLESS = {
+    *("html", "head", "meta", "title", "style", "body", "header", "footer", "section", "h1", "h2", "h3", "p", "span"),
+    *("div", "ul", "ol", "li", "a", "table", "caption", "tr", "th", "td", "figure", "figcaption", "strong"),
+    *("svg", "desc", "g", "path", "circle", "text", "tspan"),
+}
+
+
+def test_no_tag_of_a_student_gets_into_the_page(hostile):
+    page = feedback_page(hostile, find, reveal=True)
+    assert tags(page) <= HARMLESS
+    assert page.count("<style>") == 1
+    assert not re.search(r"<[^>]*\s(on\w+|srcdoc|src)\s*=", page)
+    assert "javascript:" not in re.sub(r"&[#\w]+;", " ", "".join(re.findall(r"<[^>]*>", page)))
+    assert "49" not in re.findall(r"\{\{.*?\}\}|49", page)
+    assert "{{ 7 * 7 }}" in page
+
+
+def test_an_injection_would_be_found(hostile):
+    page = feedback_page(hostile, find)
+    assert not tags(page.replace("</h1>", "</h1><script>", 1)) <= HARMLESS
+
+
+def test_the_policy_allows_the_style_sheet_and_nothing_else(hostile):
+    page = feedback_page(hostile, find)
+    (style,) = re.findall(r"<style>(.*?)</style>", page, re.DOTALL)
+    (said,) = re.findall(r'Content-Security-Policy" content="([^"]*)"', page)
+    assert said.replace("&#39;", "'") == policy(style)
+    assert "unsafe" not in said
+    assert page.index("Content-Security-Policy") < page.index("<style>")
+
+
+@pytest.mark.browser
+def test_nothing_runs_in_a_browser(hostile, tmp_path, browser):
+    (tmp_path / "page.html").write_text(feedback_page(hostile, find, "https://example.org/dh"), "utf-8")
+    planted = feedback_page(hostile, find).replace("</h1>", "</h1><script>document.title = 'ran'</script>", 1)
+    (tmp_path / "planted.html").write_text(planted, "utf-8")
+    for name in ("page.html", "planted.html"):  # the policy holds even where escaping would have failed
+        page = browser.new_page()
+        asked = []
+        page.on("request", lambda request, asked=asked: asked.append(request.url))
+        page.goto((tmp_path / name).as_uri())
+        page.mouse.move(200, 200)
+        assert page.title() == "The Quickshot: feedback"
+        assert len(asked) == 1
+        assert page.evaluate("getComputedStyle(document.body).display") == "block"
+        assert page.evaluate("getComputedStyle(document.querySelector('.grid')).borderCollapse") == "collapse"
+        page.close()
+
+
+@pytest.mark.browser
+def test_pages_fit_on_a_phone(class_folder, tmp_path, browser):
+    from dhlib.grading.batch.store import Store
+
+    with Store(class_folder) as store:
+        records = read_results(store)
+    worst = min(records, key=lambda record: record.points)
+    for name, content in (("class", class_page(records, find)), ("student", feedback_page(worst, find, reveal=True))):
+        (tmp_path / f"{name}.html").write_text(content, "utf-8")
+        page = browser.new_page(viewport={"width": 390, "height": 800})
+        page.goto((tmp_path / f"{name}.html").as_uri())
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+        page.close()
+
+
+def test_a_page_says_what_happened(results):
+    readings = {"A1": odd("A1", random.Random(1)), "slip": right("slip")}
+    rows = marked(readings)
+    results.add(submission("ada", "Ada", "ada/x.ipynb", rows), rows)
+    adjust(results, Adjustment(exercise="quickshot", student="ada", part="A1", points=0.5, reason="Nearly there."))
+    adjust(results, Adjustment(exercise="quickshot", student="ada", part="", points=2, reason="Found an erratum."))
+    set_rule(results, Rule(due="2026-11-20T20:00:00+00:00", late="10%/day, max 50%", grace="5min"))
+    (record,) = read_results(results)
+    assert (record.earned, record.deducted, record.points) == (3.5, 3.0, 0.5)
+    page = feedback_page(record, find, "https://example.org/dh")
+    for said in ("0.5 of 30 points", "Nearly there.", "Found an erratum.", "handed in 1 hour late", "at most 50 %"):
+        assert said in page
+    assert page.count('class="differs"') >= 1
+    assert 'href="https://example.org/dh/book/' in page
+
+
+def test_the_right_answer_is_shown_only_where_it_is_asked_for(results):
+    part = exercise().part("A1")
+    entry = f"{part.asks.values(part.chain)[0][0, 3]:.4g}"
+    wrong = np.full((1, 4, 4), 7.0).tolist()
+    rows = marked({"A1": {"values": wrong}})
+    results.add(submission("ada", "Ada", "ada/x.ipynb", rows), rows)
+    (record,) = read_results(results)
+    assert entry not in feedback_page(record, find)
+    assert entry in feedback_page(record, find, reveal=True)
+    assert "What it should be" in feedback_page(record, find, reveal=True)
+
+
+def test_only_entries_that_differ_are_marked():
+    values = np.array(right("A1")["values"])
+    values[0, 1, 3] += 5
+    grid = show(exercise().part("A1"), {"values": values.tolist()}).answer
+    differing = [[cell.verdict == "differs" for cell in row] for row in grid.rows]
+    assert np.argwhere(differing).tolist() == [[1, 3]]
+    assert show(exercise().part("A1"), right("A1")).answer.differing == 0
+
+
+@pytest.mark.parametrize("part_id", ["frames", "table", "A1", "A1_sym", "link", "slip", "n_y"])
+@pytest.mark.parametrize(
+    "reading",
+    [
+        None,
+        [],
+        {},
+        {"values": None},
+        {"values": [[["x"]]]},
+        {"values": [[[10**400]]]},
+        {"values": [[1e300] * 4] * 4},
+        {"table": []},
+        {"table": {"rows": 3}},
+        {"table": {"rows": [[{}, None, True, "=1"]] * 99, "columns": [1, 2]}},
+        {"table": {"rows": [[float("nan")] * 4] * 4, "columns": None}},
+        {"table": {"rows": [["q1", 1e9, 1e9, 1.0]] * 4, "columns": None, "convention": "none"}},
+        {"choice": 3},
+        {"values": [np.full((5, 4, 4), 1e8).tolist()]},
+        {"values": [np.full((5, 4, 4), float("nan")).tolist()]},
+    ],
+)
+def test_nothing_that_comes_out_of_a_box_breaks_a_page(part_id, reading):
+    show(exercise().part(part_id), reading, reveal=True)
+    picture(exercise().part(part_id), reading)
+
+
+def test_frames_are_drawn_beside_the_axes():
+    sketch = picture(exercise().part("frames"), right("frames"))
+    said = {label.text for label in sketch.labels}
+    assert {"x_0", "z_0", "1", "2", "3", "4"} <= {piece for text in said for piece in text.split(", ")}
+    far = np.array(right("frames")["values"])
+    far[0, 4, :3, 3] = 1e6
+    assert "Frame 4: too far away" in picture(exercise().part("frames"), {"values": far.tolist()}).alt
+
+
+def test_links_lead_into_the_book():
+    for chapter, sections in CHAPTERS.items():
+        text = (ROOT / "book" / f"{PAGES[chapter]}.md").read_text("utf-8")
+        for label in sections:
+            assert f"({label})=" in text
+            assert link("https://x.org", label).endswith(f"/book/{PAGES[chapter]}.html#{label}")
+
+
+@pytest.mark.parametrize("address", ["javascript:alert(1)", "data:text/html,x", "example.org", "", "//x", "http:"])
+def test_an_address_that_is_none_is_refused(address):
+    with pytest.raises(DHError, match="no address of the book"):
+        read_address(address)
+
+
+# The class
+
+
+@pytest.fixture(scope="module")
+def records(class_folder):
+    from dhlib.grading.batch.store import Store
+
+    with Store(class_folder) as store:
+        return read_results(store)
+
+
+def test_the_class_page_has_all_sections(records):
+    page = class_page(records, find, "https://example.org/dh")
+    for heading in (
+        "What to say in the next lecture",
+        "Part by part",
+        "Misconceptions by part",
+        "Worth a look",
+        "Alike",
+    ):
+        assert f"<h2>{heading}</h2>" in page
+    assert page.count("<svg") == 3
+    assert not re.search(r"<[^>]*\s(style|on\w+)=", page)
+    assert "http://" not in re.sub(r'xmlns(:\w+)?="[^"]*"', "", page)
+    assert len(re.findall(r"<style", page)) == 1
+
+
+def test_a_small_class_gets_no_statistics(records):
+    page = class_page(records[:4], find)
+    assert "fewer than 5" in page
+    assert "Median" not in page
+    assert "<svg" not in page
+    assert "Median" in class_page(records[:5], find)
+
+
+def test_a_class_of_nobody_is_a_page():
+    assert "Nothing was handed in yet" in class_page([], find)
+
+
+def test_everybody_alike_is_no_trouble(results):
+    rows = marked({part.id: right(part.id) for part in exercise().parts})
+    for k in range(6):
+        results.add(submission(str(k), f"S{k}", f"s{k}/x.ipynb", rows), rows)
+    page = class_page(read_results(results), find)
+    assert "all did alike" in page
+    assert "No known misconception showed" in page
+    assert "<h3>" not in page  # the same right answers mean nothing
+
+
+def test_the_lecture_is_about_what_cost_most(results):
+    from dhlib.grading.reports.lecture import costs
+
+    chance = random.Random(5)
+    for k in range(8):
+        readings = {part.id: right(part.id) for part in exercise().parts}
+        if k < 5:  # five of eight turn T4 round
+            value = np.array(right("T4")["values"])
+            readings["T4"] = {"values": value.transpose(0, 2, 1).tolist()}
+        if k == 7:
+            readings["A1"] = odd("A1", chance)
+        rows = marked(readings)
+        results.add(submission(str(k), f"S{k}", f"s{k}/x.ipynb", rows), rows)
+    records = read_results(results)
+    dearest = costs(records)[0]
+    assert (dearest.key, dearest.students, dearest.parts[0]) == ("transpose", 5, "T4")
+    lost = sum(a.row.out_of - a.points for r in records for a in r.answers if a.row.misconception == "transpose")
+    assert dearest.points == pytest.approx(lost)
+    page = class_page(records, find)
+    assert "5 of 8 students" in page
+
+
+def test_rare_wrong_answers_are_set_side_by_side(results):
+    from dhlib.grading.reports.similarity import alike, same_files
+
+    chance = random.Random(9)
+    shared = {part: odd(part, chance) for part in ("A2", "A3", "T4_quarter")}
+    for k in range(8):
+        readings = {part.id: right(part.id) for part in exercise().parts}
+        readings |= shared if k in (2, 5) else {"A2": odd("A2", chance)}
+        rows = marked(readings)
+        results.add(submission(str(k), f"S{k}", f"s{k}/x.ipynb", rows, sha256="same" if k in (2, 5) else str(k)), rows)
+    records = read_results(results)
+    (pair,) = alike(records)
+    assert {pair.first.student, pair.second.student} == {"2", "5"}
+    assert {each.part for each in pair.shared} == shared.keys()
+    assert all(each.students == 2 for each in pair.shared)
+    assert [{record.student for record in group} for group in same_files(records)] == [{"2", "5"}]
+    assert not alike([record for record in records if record.student != "5"])
+
+
+def test_names_stay_out_where_they_should(records):
+    page = class_page(renamed(records, lambda student: f"student-{student}"), find)
+    words = {word for record in records for word in record.name.split()}
+    assert not [word for word in words if re.search(rf"\b{re.escape(word)}\b", page)]
+    named = class_page(records, find)
+    assert [word for word in words if word in named]
+
+
+def test_a_name_in_a_message_stays_out_too(results):
+    rows = marked({})
+    adjusted = "Ada came to see me"
+    results.add(submission("17", "Ada Müller", "Müller_Ada/x.ipynb", rows, message="Müller_Ada/x.ipynb was odd"), rows)
+    adjust(results, Adjustment(exercise="quickshot", student="17", part="A1", points=1, reason=adjusted))
+    (record,) = renamed(read_results(results), lambda student: "somebody")
+    page = feedback_page(record, find)
+    assert not re.search("Ada|Müller", page)
+    assert "came to see me" in page
+    assert "Ada" not in json.dumps([record.submission.message, record.submission.source])
