@@ -110,7 +110,7 @@ def grade_notebook(
     with contextlib.ExitStack() as stack:
         sandbox = sandbox or stack.enter_context(Sandbox())
         outcome = sandbox.run(cells, requests, limits)
-    marks = [_with_error(mark, cells, outcome) for mark in Marker(exercise).mark_all(outcome.readings)]
+    marks = [with_error(mark, cells, outcome) for mark in Marker(exercise).mark_all(outcome.readings)]
     return Result(path, INCOMPLETE if outcome.note else GRADED, outcome.note, exercise, marks)
 
 
@@ -127,7 +127,7 @@ def _paper(
     return load_paper(name, exercises, key, student)
 
 
-def _with_error(mark: Mark, cells: Sequence[Cell], outcome: Outcome) -> Mark:
+def with_error(mark: Mark, cells: Sequence[Cell], outcome: Outcome) -> Mark:
     """A mark that says why there is no answer, where its cell stopped."""
     if mark.verdict != OPEN:
         return mark

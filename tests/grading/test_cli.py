@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from dhlib.cli import main
-from dhlib.grading.command import find_notebooks
+from dhlib.grading.batch.intake import collect
 from dhlib.grading.grade import Result
 from dhlib.grading.marks import Mark
 from dhlib.grading.report import feedback_page, page_names, safe
@@ -59,11 +59,14 @@ def test_a_class_is_graded(folder, tmp_path, capsys):
         assert "<script" not in page
         assert "http://" not in page.replace("http-equiv", "")
     assert "ZeroDivisionError: division by zero" in (out / rows["'=cmd.ipynb"]["feedback"]).read_text(encoding="utf-8")
-    assert "[6/6]" in said.err
+    assert "Look at: 1 stopped" not in said.out
+    assert "3 unreadable" in said.out
+    with (out / "problems.csv").open(encoding="utf-8-sig", newline="") as file:
+        assert [row["where"] for row in csv.DictReader(file)] == []
 
 
 def test_the_order_is_that_of_the_paths(folder):
-    found = [path.relative_to(folder).as_posix() for path in find_notebooks(folder)]
+    found = [handed_in.source for handed_in in collect([folder]).found]
     assert found == ["=cmd.ipynb", "Müller, Ada/quickshot.ipynb", "cut.ipynb", "loop.ipynb", "other.ipynb", "pdf.ipynb"]
 
 

@@ -38,6 +38,8 @@ class Submission:
         Where the file was found, relative to what was graded.
     place : str
         The folder, or entry of the platform, that stands for the student.
+    claims : str
+        Whose it is by its own metadata, which proves nothing; ``""`` if that is silent.
     sequence : int
         The number that the platform gave; 0 if it gave none.
     submitted : str
@@ -72,6 +74,7 @@ class Submission:
     certainty: Certainty
     source: str
     place: str
+    claims: str = ""
     sequence: int = 0
     submitted: str = ""
     late: bool = False
@@ -92,6 +95,27 @@ class Submission:
     id: int = 0
     attempt: int = 1
     counts: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grounds:
+    """What decides whether a submission has to be graded again.
+
+    Parameters
+    ----------
+    exercise, exercise_sha256 : str
+        What was asked.
+    dhlib : str
+        Version.
+    status : str
+    graded_at : str
+    """
+
+    exercise: str
+    exercise_sha256: str
+    dhlib: str
+    status: str
+    graded_at: str
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,6 +21,7 @@ MIGRATIONS: tuple[str, ...] = (
         certainty INTEGER NOT NULL,      -- who says that it is this student: see store.Certainty
         source TEXT NOT NULL,            -- where the file was found
         place TEXT NOT NULL,             -- the folder, or entry of the platform, that stands for the student
+        claims TEXT NOT NULL,            -- whose it is by its own metadata, or ''
         attempt INTEGER NOT NULL DEFAULT 1,
         counts INTEGER NOT NULL DEFAULT 1,
         sequence INTEGER NOT NULL,       -- number that the platform gave it; later ones are larger

@@ -13,10 +13,10 @@ from typing import Any
 
 from dhlib.errors import DHError
 from dhlib.grading.batch.database_errors import not_a_database, sentence
-from dhlib.grading.batch.rows import Certainty, Event, MarkRow, Problem, Student, Submission
+from dhlib.grading.batch.rows import Certainty, Event, Grounds, MarkRow, Problem, Student, Submission
 from dhlib.grading.batch.schema import APPLICATION_ID, MIGRATIONS
 
-__all__ = ["FILE", "Certainty", "Event", "MarkRow", "Problem", "Store", "Student", "Submission", "now"]
+__all__ = ["FILE", "Certainty", "Event", "Grounds", "MarkRow", "Problem", "Store", "Student", "Submission", "now"]
 
 #: What the file is called in the folder of the results.
 FILE = "results.sqlite"
@@ -25,7 +25,11 @@ PATIENCE = 10.0
 #: How every file of SQLite begins.
 HEADER = b"SQLite format 3\0"
 
+#: The status of a file that is no notebook: it does not take the place of one that is.
+UNREADABLE = "unreadable"
 _NOT_WRITTEN = {"id", "attempt", "counts"}
+_GROUNDS = [field.name for field in dataclasses.fields(Grounds)]
+_IDENTITY = ["student", "name", "certainty", "place", "sequence", "submitted", "late", "late_seconds"]
 _COLUMNS = [field.name for field in dataclasses.fields(Submission)]
 _WRITTEN = [name for name in _COLUMNS if name not in _NOT_WRITTEN]
 _MARK = [field.name for field in dataclasses.fields(MarkRow)]
@@ -33,7 +37,7 @@ _MARK = [field.name for field in dataclasses.fields(MarkRow)]
 
 def now() -> str:
     """The present moment, as the store writes it: ISO 8601 in UTC."""
-    return datetime.now(UTC).isoformat(timespec="seconds")
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
 class Store:
@@ -190,13 +194,13 @@ class Store:
                 before = f"{old['points']:g} of {old['out_of']:g} points"
                 details = f"{submission.source}: {submission.points:g} of {submission.out_of:g}, was {before}"
                 _log(db, "graded again", submission.student, details)
-                _settle(db, old["student"], old["exercise"])
+                _settle(db, old["student"])
             db.executemany(
                 f"INSERT INTO mark (submission, position, {', '.join(_MARK)}) VALUES ({_places(len(_MARK) + 2)})",
                 [[number, k, *(getattr(mark, name) for name in _MARK)] for k, mark in enumerate(marks)],
             )
             _insert_problems(db, (dataclasses.replace(problem, submission=number) for problem in problems))
-            _settle(db, submission.student, submission.exercise)
+            _settle(db, submission.student)
         return number
 
     def submissions(self, counting: bool = False) -> list[Submission]:
@@ -211,10 +215,25 @@ class Store:
             raise DHError(f"{self.path} holds no submission {number}.")
         return _submission(rows[0])
 
-    def graded(self) -> dict[tuple[str, str], tuple[str, str, str]]:
-        """What need not be graded again: source and hash of each file, to exercise hash, dhlib version and status."""
-        rows = self.query("SELECT source, sha256, exercise_sha256, dhlib, status FROM submission")
-        return {(row[0], row[1]): (row[2], row[3], row[4]) for row in rows}
+    def graded(self) -> dict[tuple[str, str], Grounds]:
+        """What was graded: source and hash of each file, and upon which grounds."""
+        rows = self.query("SELECT source, sha256, exercise, exercise_sha256, dhlib, status, graded_at FROM submission")
+        return {(row[0], row[1]): Grounds(**{name: row[name] for name in _GROUNDS}) for row in rows}
+
+    def identify(self, submission: Submission) -> None:
+        """Keep anew who handed something in, without its marks: somebody looked it up in a roster, for instance."""
+        with self.transaction() as db:
+            (old,) = db.execute("SELECT * FROM submission WHERE id = ?", (submission.id,)).fetchall()
+            if all(old[name] == getattr(submission, name) for name in _IDENTITY):
+                return
+            db.execute(
+                f"UPDATE submission SET {', '.join(f'{name} = ?' for name in _IDENTITY)} WHERE id = ?",
+                [*(getattr(submission, name) for name in _IDENTITY), submission.id],
+            )
+            if old["student"] != submission.student:
+                _log(db, "told anew", submission.student, f"{submission.source}: was {old['student'] or 'nobody'!s}")
+            _settle(db, old["student"])
+            _settle(db, submission.student)
 
     def marks(self, number: int) -> list[MarkRow]:
         """The marks of a submission, part by part."""
@@ -260,27 +279,37 @@ def _begins_like_a_database(path: Path) -> bool:
         return file.read(len(HEADER)) in (HEADER, b"")
 
 
-def _settle(db: sqlite3.Connection, student: str, exercise: str) -> None:
-    """Number a student's attempts at an exercise, and say which one counts: the last of those told most surely.
+def _settle(db: sqlite3.Connection, student: str) -> None:
+    """Number a student's attempts at each exercise, and say which one counts.
 
-    Files whose notebooks alone say whose they are count for nobody if there are several: anybody could have written
-    that.
+    It is the last that can be read, of those that are told most surely. Files whose notebooks alone say whose they are
+    count for nobody if there are several: anybody could have written that.
     """
     if not student:
         return
     rows = db.execute(
-        "SELECT id, certainty, source FROM submission WHERE student = ? AND exercise = ? "
+        "SELECT id, exercise, certainty, source, status FROM submission WHERE student = ? "
         "ORDER BY sequence, submitted, id",
-        (student, exercise),
+        (student,),
     ).fetchall()
-    surest = max((row["certainty"] for row in rows), default=0)
-    of_surest = [row for row in rows if row["certainty"] == surest]
-    doubtful = surest == Certainty.METADATA and len({row["source"] for row in of_surest}) > 1
-    last = None if doubtful or not of_surest else of_surest[-1]["id"]
-    for attempt, row in enumerate(rows, 1):
-        db.execute(
-            "UPDATE submission SET attempt = ?, counts = ? WHERE id = ?", (attempt, row["id"] == last, row["id"])
+    exercises = {row["exercise"] for row in rows}
+    for exercise in exercises:
+        attempts = [row for row in rows if row["exercise"] == exercise]
+        counts = None if exercise == "" and len(exercises) > 1 else _counts(attempts)
+        db.executemany(
+            "UPDATE submission SET attempt = ?, counts = ? WHERE id = ?",
+            [(attempt, row["id"] == counts, row["id"]) for attempt, row in enumerate(attempts, 1)],
         )
+
+
+def _counts(attempts: Sequence[sqlite3.Row]) -> int | None:
+    """Which of the attempts at one exercise counts, if any."""
+    surest = max(row["certainty"] for row in attempts)
+    attempts = [row for row in attempts if row["certainty"] == surest]
+    if surest == Certainty.METADATA and len({row["source"] for row in attempts}) > 1:
+        return None
+    readable = [row for row in attempts if row["status"] != UNREADABLE]
+    return int((readable or attempts)[-1]["id"])
 
 
 def _log(db: sqlite3.Connection, what: str, student: str, details: str) -> None:

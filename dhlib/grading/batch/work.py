@@ -1,0 +1,259 @@
+"""Grade one submission: the unit of work, the same in a worker process at home and on a cluster.
+
+Three steps, of which only the second meets the student's code, in a box:
+
+1. `Grader.prepare`: read the notebook, and put its answers into the pristine exercise;
+2. `Sandbox.run`: run it, and bring home the answers;
+3. `Grader.finish`: mark them.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from dhlib.errors import DHError
+from dhlib.grading.batch.asked import Asked, Catalogue
+from dhlib.grading.batch.rows import MarkRow
+from dhlib.grading.grade import FAILED, GRADED, INCOMPLETE, UNREADABLE, with_error
+from dhlib.grading.marking import Marker
+from dhlib.grading.notebook import Cell, exercise_name, merge, parse_notebook, read_cells
+from dhlib.grading.wall import Limits, Outcome
+
+#: A longer answer is not kept: nobody would look at it, and it says nothing of a misconception.
+LONGEST_ANSWER = 100_000
+LONGEST_MESSAGE = 1_000
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What holds for every submission of a run.
+
+    Parameters
+    ----------
+    exercise : str
+        Which one it is, where the notebooks do not say; ``""`` if they do.
+    exercises : Path, optional
+        Where to look for exercises first.
+    limits : Limits
+        For each notebook.
+    unsafe : bool
+        Run without walls.
+    """
+
+    exercise: str = ""
+    exercises: Path | None = None
+    limits: Limits = field(default_factory=Limits)
+    unsafe: bool = False
+
+
+@dataclass(frozen=True)
+class Work:
+    """One submission to grade.
+
+    Parameters
+    ----------
+    number : int
+        Where it stands in the run.
+    name : str
+        Of the file, for messages.
+    student : str
+        Whose it is by its place, or ``""``.
+    data : bytes
+        The file.
+    fault : str
+        Why there is no file, or ``""``.
+    """
+
+    number: int
+    name: str
+    student: str
+    data: bytes
+    fault: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Graded:
+    """What came of one submission.
+
+    Parameters
+    ----------
+    number : int
+    status : {"graded", "stopped", "unreadable", "failed"}
+    message : str
+    exercise : str
+    claims : str
+        Whose it is by its own metadata, or ``""``.
+    marks : sequence of MarkRow
+    out_of : float
+    seconds : float
+    exercise_sha256 : str
+    """
+
+    number: int
+    status: str
+    message: str = ""
+    exercise: str = ""
+    claims: str = ""
+    marks: Sequence[MarkRow] = ()
+    out_of: float = 0.0
+    seconds: float = 0.0
+    exercise_sha256: str = ""
+
+    @property
+    def points(self) -> float:
+        """Points earned."""
+        return round(sum(mark.points for mark in self.marks), 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A submission that is ready for the box."""
+
+    work: Work
+    asked: Asked
+    claims: str
+    cells: Sequence[Cell]
+
+
+class Grader:
+    """The trusted side of grading.
+
+    Parameters
+    ----------
+    settings : Settings
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self.catalogue = Catalogue(settings.exercises)
+
+    def prepare(self, work: Work) -> Prepared | Graded:
+        """Read a submission; one that cannot be read is graded already.
+
+        Raises
+        ------
+        DHError
+            If the exercise that was named on the command line is missing or broken.
+        """
+        if work.fault:
+            return self._unreadable(work, work.fault)
+        try:
+            notebook = parse_notebook(work.data, work.name)
+            cells = read_cells(notebook)
+        except DHError as error:
+            return self._unreadable(work, str(error))
+        claims = claimed_student(notebook)
+        name = self._exercise(notebook, work.name)
+        if not name:
+            says = f"{work.name} does not say which exercise it is; name it with --exercise NAME."
+            return self._unreadable(work, says, claims)
+        asked = self.catalogue.asked(name, work.student or claims)
+        return Prepared(work, asked, claims, merge(asked.pristine, cells))
+
+    def finish(self, prepared: Prepared, outcome: Outcome, seconds: float) -> Graded:
+        """Mark what came out of the box."""
+        exercise = prepared.asked.exercise
+        readings = outcome.readings
+        marks = [with_error(mark, prepared.cells, outcome) for mark in Marker(exercise).mark_all(readings)]
+        return Graded(
+            number=prepared.work.number,
+            status=INCOMPLETE if outcome.note else GRADED,
+            message=outcome.note[:LONGEST_MESSAGE],
+            exercise=exercise.name,
+            claims=prepared.claims,
+            marks=[
+                MarkRow(
+                    part=mark.part,
+                    title=part.title,
+                    points=mark.points,
+                    out_of=mark.out_of,
+                    verdict=mark.verdict,
+                    message=mark.message,
+                    misconception=mark.misconception,
+                    section=mark.section,
+                    answer=kept(readings.get(mark.part)),
+                )
+                for mark, part in zip(marks, exercise.parts, strict=True)
+            ],
+            out_of=exercise.points,
+            seconds=seconds,
+            exercise_sha256=prepared.asked.sha256,
+        )
+
+    def _unreadable(self, work: Work, why: str, claims: str = "") -> Graded:
+        """No points, of as many as there are if the exercise is known."""
+        name = self.settings.exercise
+        asked = self.catalogue.asked(name, work.student or claims) if name else None
+        return Graded(
+            number=work.number,
+            status=UNREADABLE,
+            message=why[:LONGEST_MESSAGE],
+            exercise=name,
+            claims=claims,
+            out_of=asked.exercise.points if asked else 0.0,
+            exercise_sha256=asked.sha256 if asked else "",
+        )
+
+    def _exercise(self, notebook: dict[str, Any], file: str) -> str:
+        """Which exercise it is: what the instructor says, else the notebook, else the name of its file."""
+        if self.settings.exercise:
+            return self.settings.exercise
+        for name in (exercise_name(notebook), Path(file).stem):
+            if name and self.catalogue.has(name):
+                return name
+        return ""
+
+
+def failed(number: int, why: str) -> Graded:
+    """A submission at which the grader itself failed."""
+    return Graded(number=number, status=FAILED, message=why[:LONGEST_MESSAGE])
+
+
+def grade(grader: Grader, sandbox: Any, work: Work) -> Graded:
+    """Grade a submission in a box; whatever goes wrong with it is in what is returned.
+
+    Raises
+    ------
+    DHError
+        If the exercise, or this machine, does not allow to grade anything.
+    """
+    begun = time.monotonic()
+    try:
+        prepared = grader.prepare(work)
+        if isinstance(prepared, Graded):
+            return prepared
+        outcome = sandbox.run(prepared.cells, prepared.asked.requests)
+        return grader.finish(prepared, outcome, round(time.monotonic() - begun, 3))
+    except DHError:
+        raise
+    except Exception as error:  # ours to mend; the others should not suffer
+        return failed(work.number, broken(error))
+
+
+def broken(error: BaseException) -> str:
+    """What to say when the grader itself is at fault."""
+    return f"The grader failed on it ({type(error).__name__}: {error}). Please report this."
+
+
+def claimed_student(notebook: dict[str, Any]) -> str:
+    """Whose a notebook says it is; its author can make it say anything."""
+    metadata = notebook.get("metadata")
+    about = metadata.get("dh") if isinstance(metadata, dict) else None
+    student = about.get("student") if isinstance(about, dict) else None
+    if not isinstance(student, str):
+        return ""
+    return "".join(letter for letter in student if letter.isprintable())[:200].strip()
+
+
+def kept(reading: Any) -> str:
+    """A reading as it is kept: JSON, of bounded length."""
+    try:
+        text = json.dumps(reading, ensure_ascii=True, allow_nan=False)
+    except (ValueError, TypeError, RecursionError):
+        return '{"fault": "refused"}'
+    return text if len(text) <= LONGEST_ANSWER else '{"fault": "large"}'
