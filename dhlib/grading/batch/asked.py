@@ -10,8 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from dhlib.errors import DHError
-from dhlib.grading.exercise import Exercise, exercise_folders, find_exercise, load_exercise
-from dhlib.grading.notebook import Cell, load_notebook, read_cells
+from dhlib.grading.course.keys import fingerprint
+from dhlib.grading.course.papers import Papers
+from dhlib.grading.exercise import Exercise, exercise_folders, find_exercise
+from dhlib.grading.notebook import Cell
 
 #: Exercises kept at a time; with numbers of one's own each student has another one.
 MOST_KEPT = 32
@@ -44,6 +46,8 @@ class Catalogue:
     ----------
     folder : path, optional
         Where to look first.
+    key : bytes, optional
+        Of the course: then each student has numbers of their own.
 
     Examples
     --------
@@ -51,8 +55,10 @@ class Catalogue:
     'The Quickshot'
     """
 
-    def __init__(self, folder: Path | None = None) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path | None = None, key: bytes | None = None) -> None:
+        self.folder, self.key = folder, key
+        self._papers: dict[str, Papers] = {}
+        self._sums: dict[str, str] = {}
         self._kept: OrderedDict[tuple[str, str], Asked] = OrderedDict()
 
     def has(self, name: str) -> bool:
@@ -65,29 +71,32 @@ class Catalogue:
 
     def asked(self, name: str, student: str) -> Asked:
         """What this student was asked; raises DHError if there is no such exercise, or its files are broken."""
-        key = (name, "")
-        if key not in self._kept:
-            self._kept[key] = self._load(name)
+        student = student if self.key is not None else ""
+        if (name, student) not in self._kept:
+            self._kept[name, student] = self._load(name, student)
             if len(self._kept) > MOST_KEPT:
                 self._kept.popitem(last=False)
-        self._kept.move_to_end(key)
-        return self._kept[key]
+        self._kept.move_to_end((name, student))
+        return self._kept[name, student]
 
     def sha256(self, name: str) -> str:
-        """Of the files of an exercise; ``""`` if it is not there."""
-        digest = hashlib.sha256()
-        try:
-            for suffix in (".py", ".ipynb"):
-                digest.update(find_exercise(name, suffix, self.folder).read_bytes())
-        except (DHError, OSError):
-            return ""
-        return digest.hexdigest()
+        """Of the files of an exercise, and of the key; ``""`` if it is not there."""
+        if name not in self._sums:
+            digest = hashlib.sha256(fingerprint(self.key).encode() if self.key is not None else b"")
+            try:
+                for suffix in (".py", ".ipynb"):
+                    digest.update(find_exercise(name, suffix, self.folder).read_bytes())
+            except (DHError, OSError):
+                return ""
+            self._sums[name] = digest.hexdigest()
+        return self._sums[name]
 
-    def _load(self, name: str) -> Asked:
-        exercise = load_exercise(name, self.folder)
-        pristine = read_cells(load_notebook(find_exercise(name, ".ipynb", self.folder)))
-        requests = {part.id: part.asks.request() for part in exercise.parts}
-        return Asked(exercise, pristine, requests, self.sha256(name))
+    def _load(self, name: str, student: str) -> Asked:
+        if name not in self._papers:
+            self._papers[name] = Papers(name, self.folder)
+        paper = self._papers[name].of(self.key, student or None)
+        requests = {part.id: part.asks.request() for part in paper.exercise.parts}
+        return Asked(paper.exercise, paper.cells, requests, self.sha256(name))
 
 
 def names(folder: Path | None = None) -> list[str]:

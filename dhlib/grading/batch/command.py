@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from dhlib.errors import DHError
+from dhlib.grading.batch.problems import PROBLEMS, write_problems
 from dhlib.grading.batch.run import Shard, Summary
 
 DESCRIPTION = """\
@@ -37,6 +38,7 @@ def add_grade(commands: Any) -> None:
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where results go")
     parser.add_argument("--exercise", default="", metavar="NAME", help="which exercise it is, if notebooks do not say")
     parser.add_argument("--exercises", type=Path, metavar="DIR", help="where to look for exercises first")
+    parser.add_argument("--key", type=Path, metavar="FILE", help="of the course, for notebooks that were assigned")
     parser.add_argument("--timeout", type=positive, default=60.0, metavar="S", help="seconds for a notebook (60)")
     parser.add_argument("--workers", type=count, metavar="N", help="notebooks at a time (one for each core)")
     parser.add_argument(
@@ -51,19 +53,43 @@ def add_grade(commands: Any) -> None:
         "--shard", type=shard, metavar="I/N", help="only share I of N; `dhlib merge` brings them together"
     )
     parser.add_argument("--pseudonyms", action="store_true", help="print no names, and send none to a cluster")
-    parser.add_argument(
-        "--unsafe-no-sandbox", action="store_true", help="run without walls: only for notebooks of your own"
-    )
+    add_walls(parser)
     parser.set_defaults(run=grade)
+
+
+def add_walls(parser: argparse.ArgumentParser) -> None:
+    """Add what concerns the sandbox."""
+    parser.add_argument(
+        "--unsafe-no-sandbox",
+        dest="unsafe",
+        action="store_true",
+        help="run notebooks as yourself, with all that you may do: for your own notebooks only",
+    )
+    parser.add_argument("--doctor", action=Doctor, nargs=0, help="say which walls stand on this machine, and try each")
+
+
+class Doctor(argparse.Action):
+    """Look at the walls, and leave."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        """Print the findings; the exit code is 1 if a wall that strangers need does not stand."""
+        from dhlib.grading.wall.doctor import look
+
+        parser.exit(0 if look(sys.stdout) else 1)
 
 
 def grade(options: argparse.Namespace) -> int:
     """Grade, write and sum up."""
     from dhlib.grading.batch.pool import Pool
     from dhlib.grading.batch.run import grade_class
+    from dhlib.grading.batch.store import Store
     from dhlib.grading.batch.work import Settings
+    from dhlib.grading.course.keys import read_key
     from dhlib.grading.exercise import find_exercise
+    from dhlib.grading.reports.settings import change_settings
+    from dhlib.grading.reports.write import write_reports
     from dhlib.grading.wall import Limits
+    from dhlib.grading.wall.limits import UNSAFE
 
     if options.exercises and not options.exercises.is_dir():
         raise DHError(f"there is no folder {options.exercises}; --exercises names the folder that holds NAME.py.")
@@ -71,8 +97,14 @@ def grade(options: argparse.Namespace) -> int:
         raise DHError(f"{options.out} is a file; --out names a folder.")
     if options.exercise:
         find_exercise(options.exercise, ".py", options.exercises)
+    if options.unsafe:
+        print(f"dhlib: {UNSAFE}", file=sys.stderr)
     settings = Settings(
-        options.exercise, options.exercises, Limits.of(options.timeout), unsafe=options.unsafe_no_sandbox
+        options.exercise,
+        options.exercises,
+        Limits.of(options.timeout),
+        unsafe=options.unsafe,
+        key=read_key(options.key) if options.key else None,
     )
     try:
         with Pool(settings, options.workers or cores()) as workers:
@@ -88,19 +120,17 @@ def grade(options: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         print("\nStopped. What was graded is kept; the same command goes on where it was.", file=sys.stderr)
         return 130
-    table = write_views(options.out)
     print(in_words(summary))
-    print(f"Grades: {table}")
+    with Store(options.out) as store:
+        change_settings(
+            store,
+            pseudonyms=options.pseudonyms or None,
+            exercises=str(options.exercises.resolve()) if options.exercises else None,
+        )
+        written = write_reports(store)
+        write_problems(store, options.out / PROBLEMS)
+    print(f"Grades: {written.grades}")
     return 0 if set(summary.status) <= {"graded"} else 1
-
-
-def write_views(out: Path) -> Path:
-    """Write the table and the pages, and return the table."""
-    from dhlib.grading.batch.store import Store
-    from dhlib.grading.batch.views import write_reports
-
-    with Store(out) as store:
-        return write_reports(store, out)
 
 
 def in_words(summary: Summary) -> str:

@@ -134,7 +134,7 @@ def grade_class(
 class _Run:
     def __init__(self, store: Store, settings: Settings, regrade: Regrade, quiet: bool) -> None:
         self.store, self.settings, self.regrade, self.quiet = store, settings, regrade, quiet
-        self.catalogue = Catalogue(settings.exercises)
+        self.catalogue = Catalogue(settings.exercises, settings.key)
         self.before = store.graded()
         self.known = {(s.source, s.sha256): s for s in store.submissions()} if self.before else {}
         self.since = self._since()

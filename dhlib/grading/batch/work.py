@@ -19,9 +19,10 @@ from typing import Any
 from dhlib.errors import DHError
 from dhlib.grading.batch.asked import Asked, Catalogue
 from dhlib.grading.batch.rows import MarkRow
+from dhlib.grading.course.papers import NotAssigned, Tag, check_tag, read_tag
 from dhlib.grading.grade import FAILED, GRADED, INCOMPLETE, UNREADABLE, with_error
 from dhlib.grading.marking import Marker
-from dhlib.grading.notebook import Cell, exercise_name, merge, parse_notebook, read_cells
+from dhlib.grading.notebook import Cell, merge, parse_notebook, read_cells
 from dhlib.grading.wall import Limits, Outcome
 
 #: A longer answer is not kept: nobody would look at it, and it says nothing of a misconception.
@@ -43,12 +44,15 @@ class Settings:
         For each notebook.
     unsafe : bool
         Run without walls.
+    key : bytes, optional
+        Of the course, for notebooks that were assigned; it stays in the processes of this machine.
     """
 
     exercise: str = ""
     exercises: Path | None = None
     limits: Limits = field(default_factory=Limits)
     unsafe: bool = False
+    key: bytes | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True)
@@ -130,7 +134,7 @@ class Grader:
 
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
-        self.catalogue = Catalogue(settings.exercises)
+        self.catalogue = Catalogue(settings.exercises, settings.key)
 
     def prepare(self, work: Work) -> Prepared | Graded:
         """Read a submission; one that cannot be read is graded already.
@@ -145,14 +149,18 @@ class Grader:
         try:
             notebook = parse_notebook(work.data, work.name)
             cells = read_cells(notebook)
+            tag = read_tag(notebook)
+            self._check(tag)
+        except NotAssigned as error:
+            return self._unreadable(work, f"{work.name} cannot be graded: {error}")
         except DHError as error:
             return self._unreadable(work, str(error))
-        claims = claimed_student(notebook)
-        name = self._exercise(notebook, work.name)
+        claims = "".join(letter for letter in tag.student if letter.isprintable()).strip()
+        name = self._exercise(tag, work.name)
         if not name:
             says = f"{work.name} does not say which exercise it is; name it with --exercise NAME."
             return self._unreadable(work, says, claims)
-        asked = self.catalogue.asked(name, work.student or claims)
+        asked = self.catalogue.asked(name, tag.student)
         return Prepared(work, asked, claims, merge(asked.pristine, cells))
 
     def finish(self, prepared: Prepared, outcome: Outcome, seconds: float) -> Graded:
@@ -188,7 +196,7 @@ class Grader:
     def _unreadable(self, work: Work, why: str, claims: str = "") -> Graded:
         """No points, of as many as there are if the exercise is known."""
         name = self.settings.exercise
-        asked = self.catalogue.asked(name, work.student or claims) if name else None
+        asked = self.catalogue.asked(name, "") if name and self.settings.key is None else None
         return Graded(
             number=work.number,
             status=UNREADABLE,
@@ -199,11 +207,23 @@ class Grader:
             exercise_sha256=asked.sha256 if asked else "",
         )
 
-    def _exercise(self, notebook: dict[str, Any], file: str) -> str:
-        """Which exercise it is: what the instructor says, else the notebook, else the name of its file."""
+    def _check(self, tag: Tag) -> None:
+        """Make sure that an assigned notebook is graded with the key that it was assigned with.
+
+        Its seal, which nobody can make without the key, says whose numbers it holds; whose work it is it does not say.
+        """
+        if self.settings.key is not None:
+            check_tag(tag, self.settings.key)
+        elif tag.seal:
+            raise NotAssigned(f"it was assigned to {tag.student!r}: grade it with --key.")
+
+    def _exercise(self, tag: Tag, file: str) -> str:
+        """Which exercise it is: what the seal or the instructor says, else the notebook, else the name of its file."""
+        if self.settings.key is not None:
+            return tag.exercise
         if self.settings.exercise:
             return self.settings.exercise
-        for name in (exercise_name(notebook), Path(file).stem):
+        for name in (tag.exercise, Path(file).stem):
             if name and self.catalogue.has(name):
                 return name
         return ""
@@ -238,16 +258,6 @@ def grade(grader: Grader, sandbox: Any, work: Work) -> Graded:
 def broken(error: BaseException) -> str:
     """What to say when the grader itself is at fault."""
     return f"The grader failed on it ({type(error).__name__}: {error}). Please report this."
-
-
-def claimed_student(notebook: dict[str, Any]) -> str:
-    """Whose a notebook says it is; its author can make it say anything."""
-    metadata = notebook.get("metadata")
-    about = metadata.get("dh") if isinstance(metadata, dict) else None
-    student = about.get("student") if isinstance(about, dict) else None
-    if not isinstance(student, str):
-        return ""
-    return "".join(letter for letter in student if letter.isprintable())[:200].strip()
 
 
 def kept(reading: Any) -> str:
