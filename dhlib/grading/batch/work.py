@@ -19,6 +19,7 @@ from typing import Any
 from dhlib.errors import DHError
 from dhlib.grading.batch.asked import Asked, Catalogue
 from dhlib.grading.batch.rows import MarkRow
+from dhlib.grading.closing import close_parts
 from dhlib.grading.course.papers import NotAssigned, Tag, check_tag, read_tag
 from dhlib.grading.grade import FAILED, GRADED, INCOMPLETE, UNREADABLE, with_error
 from dhlib.grading.marking import Marker
@@ -161,7 +162,7 @@ class Grader:
             says = f"{work.name} does not say which exercise it is; name it with --exercise NAME."
             return self._unreadable(work, says, claims)
         asked = self.catalogue.asked(name, tag.student)
-        return Prepared(work, asked, claims, merge(asked.pristine, cells))
+        return Prepared(work, asked, claims, close_parts(merge(asked.pristine, cells), asked.exercise))
 
     def finish(self, prepared: Prepared, outcome: Outcome, seconds: float) -> Graded:
         """Mark what came out of the box."""

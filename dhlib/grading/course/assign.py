@@ -23,7 +23,7 @@ from dhlib.grading.course.variants import Variants, fill
 from dhlib.grading.derive import as_text
 from dhlib.grading.exercise import find_exercise
 from dhlib.grading.notebook import load_notebook
-from dhlib.grading.report import safe
+from dhlib.grading.reports.cells import safe
 
 #: What may stand in a file name on every system, besides letters and digits.
 HARMLESS = "-_.@+"
