@@ -50,7 +50,7 @@ def who(*sources, **options):
     return {h.source: h.origin.student for h in collect(sources, EXERCISES, **options).found}
 
 
-def whats(intake):
+def sentences(intake):
     return {problem.source: problem.what for problem in intake.problems}
 
 
@@ -161,7 +161,7 @@ def test_whoever_handed_in_something_else_is_not_lost(class_):
     (folder / "dora").mkdir()
     intake = collect([folder], EXERCISES)
     assert [h.source for h in intake.found] == ["ada/essay.pdf", "bob/quickshot.ipynb.txt", "carl/quickshot.ipynb"]
-    assert whats(intake) == {"dora": "The folder is empty."}
+    assert sentences(intake) == {"dora": "The folder is empty."}
 
 
 def test_links_are_not_followed(class_, tmp_path):
@@ -235,7 +235,7 @@ def test_the_download_of_a_class_among_others_is_said(class_):
     packed(dict.fromkeys(MOODLE, NOTEBOOK), folder / "moodle.zip")
     intake = collect([folder], EXERCISES)
     assert [h.origin.student for h in intake.found] == ["bob"]
-    assert "a source of its own" in whats(intake)["moodle.zip"]
+    assert "a source of its own" in sentences(intake)["moodle.zip"]
 
 
 def test_the_same_path_in_two_sources_is_told_apart(class_):

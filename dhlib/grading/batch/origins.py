@@ -14,7 +14,7 @@ MOODLE = re.compile(r"(?P<name>.+?)_(?P<id>\d+)_assignsubmission_(?P<kind>[a-z]+
 CANVAS = re.compile(r"(?P<name>[^_]+)(?P<late>_late)?_(?P<id>\d+)_(?P<number>\d+)_(?P<rest>.+)", re.DOTALL | re.I)
 LONGEST_NAME = 500
 #: What is added to a name when there is one already, or when somebody saves once more.
-COPY = re.compile(r"[\s_-]*(?:\(\d+\)|copy|kopie|copie|copia|final|new|v?\d+)", re.IGNORECASE)
+COPY = re.compile(r"[\s_-]*(?:\(\d+\)|copy|kopie|final|new|v?\d+)", re.IGNORECASE)
 #: What GitHub Classroom calls the folder of the clones.
 CLONES = "-submissions"
 ENDINGS = re.compile(r"(?:\.(?:ipynb|json|txt|zip))+$", re.IGNORECASE)

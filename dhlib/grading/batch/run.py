@@ -26,7 +26,7 @@ from dhlib.grading.grade import FAILED, GRADED
 
 Regrade = Literal["", "changed", "all"]
 #: Since when a run grades everything again: it is kept until the run is done, so that it can be resumed.
-_SINCE = "regrading since"
+_SINCE = "grading all since"
 
 
 class Workers(Protocol):
