@@ -13,6 +13,7 @@ import os
 import re
 import shutil
 import subprocess
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
@@ -30,6 +31,7 @@ logger = logging.getLogger(__name__)
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
 GLYPH = re.compile(r'href="#glyph-([^"]+)"')
+OPENING, CLOSING = re.compile(r"[(\[‘“]+$"), re.compile(r"^[.,;:!?)\]’”]+")
 
 
 class Formula(TypedDict):
@@ -124,10 +126,24 @@ def set_formula(translator: HTML5Translator, tex: str, node: nodes.Element, *, d
     return f'<span class="formula">{formula["svg"]}<span class="spoken">{formula["mathml"]}</span></span>'
 
 
+def keep_marks(_app: Sphinx, doctree: nodes.document, _page: str) -> None:
+    """Give each formula the bracket before it and the full stop behind it: browsers break lines at formulas."""
+    for formula in list(doctree.findall(nodes.math)):
+        place = formula.parent.index(formula)
+        for step, marks, side in ((-1, OPENING, "before"), (1, CLOSING, "after")):
+            beside = formula.parent[place + step] if 0 <= place + step < len(formula.parent) else None
+            if isinstance(beside, nodes.Text) and (found := marks.search(beside)):
+                formula[side] = found.group()
+                formula.parent[place + step] = nodes.Text(marks.sub("", beside))
+
+
 def visit_inline(translator: HTML5Translator, node: nodes.math) -> None:
-    """Write a formula within a line."""
-    translator.body.append(translator.starttag(node, "span", "", CLASS="math notranslate nohighlight"))
-    translator.body.append(set_formula(translator, node.astext(), node, display=False) + "</span>")
+    """Write a formula within a line, with the marks that it keeps beside it."""
+    before, after = (escape(node.get(side, "")) for side in ("before", "after"))
+    tag = translator.starttag(node, "span", "", CLASS="math notranslate nohighlight")
+    formula = tag + set_formula(translator, node.astext(), node, display=False) + "</span>"
+    kept = f'<span class="kept">{before}{formula}{after}</span>' if before or after else formula
+    translator.body.append(kept)
     raise nodes.SkipNode
 
 
@@ -172,6 +188,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
     app.add_html_math_renderer("typeset", (visit_inline, None), (visit_display, None))
     app.connect("builder-inited", open_typesetter)
+    app.connect("doctree-resolved", keep_marks)
     app.connect("html-page-context", note_page)
     app.connect("build-finished", finish)
     return {"parallel_read_safe": True, "parallel_write_safe": False}

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from bs4 import BeautifulSoup
 from building import build_book, pages_of
 from fontTools.ttLib import TTFont
 from truth import silent_figures
@@ -88,6 +89,19 @@ def test_a_speaking_figure_passes() -> None:
         '<img alt="Two frames" src="a.png"><svg aria-label="Two frames"></svg><svg aria-hidden="true"/>'
         '<svg aria-hidden="true"><svg viewBox="0 0 1 1"><path/></svg></svg>'
     )
+
+
+def lone_marks(page: str) -> list[str]:
+    """Return the marks that a browser may put on a line of their own, away from the formula before them."""
+    formulas = BeautifulSoup(page, "html.parser").select("main span.math")
+    loose = [formula.next_sibling for formula in formulas if "kept" not in (formula.parent or {}).get("class", [])]
+    return [str(text)[:20] for text in loose if isinstance(text, str) and re.match(r"[.,;:!?)]", text)]
+
+
+def test_a_full_stop_stays_beside_its_formula(site: Path) -> None:
+    pages = {path.name: path.read_text("utf-8") for path in (site / "book").glob("*.html")}
+    assert {name: marks for name, page in pages.items() if (marks := lone_marks(page))} == {}
+    assert lone_marks(pages["placing.html"].replace('<span class="kept">', "<span>"))
 
 
 def test_icons_are_few_and_all_there(site: Path) -> None:
