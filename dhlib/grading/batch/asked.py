@@ -92,9 +92,14 @@ class Catalogue:
         return self._sums[name]
 
     def _load(self, name: str, student: str) -> Asked:
-        if name not in self._papers:
-            self._papers[name] = Papers(name, self.folder)
-        paper = self._papers[name].of(self.key, student or None)
+        try:
+            if name not in self._papers:
+                self._papers[name] = Papers(name, self.folder)
+            paper = self._papers[name].of(self.key, student or None)
+        except DHError:
+            raise
+        except Exception as error:  # whatever an exercise's own file does
+            raise DHError(f"the exercise {name!r} is broken: {type(error).__name__}: {error}.") from error
         requests = {part.id: part.asks.request() for part in paper.exercise.parts}
         return Asked(paper.exercise, paper.cells, requests, self.sha256(name))
 
