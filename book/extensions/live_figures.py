@@ -20,6 +20,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
 from docutils import nodes
 from docutils.parsers.rst import directives
 from formulas import ROOT, node_program
@@ -29,6 +30,7 @@ from sphinx.util.docutils import SphinxDirective
 from dhlib import Chain, DHError, Revolute, robots
 from dhlib.drawing import draw
 from dhlib.export import chain_json
+from dhlib.normals import common_normal
 from dhlib.sketch import link, sketch, steps
 
 sys.path.append(str(ROOT / "book"))
@@ -189,8 +191,11 @@ class DhRobot(LiveFigure):
             "q": json.dumps(self.pose(chain)),
         } | bodies(classic)
         if "elbow" in self.options:
-            if chain.kinds != "RRRRRRR":
-                raise ValueError(f"{chain.name} has no elbow circle: that takes seven revolute joints.")
+            if not has_elbow_circle(chain):
+                raise ValueError(
+                    f"{chain.name} has no elbow circle: that takes seven revolute joints, of which 1, 2, 3 meet in the "
+                    "shoulder and 5, 6, 7 in the wrist, each at right angles to the next."
+                )
             data["elbow"] = ""
         return data
 
@@ -247,6 +252,17 @@ def read_robot(name: str, arguments: str = "") -> Chain:
         given["n"] = int(given["n"])
     chain: Chain = getattr(robots, name)(**given)
     return chain
+
+
+def has_elbow_circle(chain: Chain) -> bool:
+    """Say whether the elbow of an arm can go round while the hand rests, as ``turnElbow`` of the figures does it."""
+    if chain.kinds != "RRRRRRR":
+        return False
+    axes = chain.axes()
+    normals = [common_normal(axes[k], axes[k + 1]) for k in (0, 1, 4, 5)]
+    crossed = all(n.kind == "intersecting" and abs(n.angle - math.pi / 2) < 1e-9 for n in normals)
+    meet = all(np.allclose(normals[k].after, normals[k + 1].before, atol=1e-9 * chain.reach) for k in (0, 2))
+    return crossed and meet
 
 
 def bodies(chain: Chain) -> dict[str, str]:

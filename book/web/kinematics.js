@@ -125,9 +125,12 @@ export function motion({ point, direction, kind }, q) {
 /** The pose of the end when every joint moves its part of the arm. */
 export const productOfExponentials = (lines, end, q) => multiply(...lines.map((line, k) => motion(line, q[k])), end);
 
+// The elbow circle of an arm with seven joints
+
 /**
  * The circle on which the elbow of an arm with seven joints can go round while the hand rests: its centre, its radius,
- * and the axis from shoulder to wrist. Shoulder, elbow and wrist are where axes 2 and 3, 3 and 4, 5 and 6 meet.
+ * the axis from shoulder to wrist, and the angle at which the elbow stands on it, 0 where it is nearest to the direction
+ * of axis 1. Shoulder, elbow and wrist are where axes 2 and 3, 3 and 4, 5 and 6 meet.
  */
 export function elbowCircle(chain, q) {
   const poses = frames(chain, q);
@@ -137,8 +140,64 @@ export function elbowCircle(chain, q) {
   const [shoulder, elbow, wrist] = [meet(2, 3), meet(3, 4), meet(5, 6)];
   const axis = unit(subtract(wrist, shoulder));
   const centre = foot({ point: shoulder, direction: axis }, elbow);
-  return { centre, axis, elbow, radius: length(subtract(elbow, centre)) };
+  const away = [lines[0].direction, [1, 0, 0]].find((direction) => length(cross(axis, direction)) > 1e-6) ?? [0, 1, 0];
+  const start = unit(along(away, -dot(away, axis), axis));
+  const radial = subtract(elbow, centre);
+  const angle = angleOf(dot(radial, cross(axis, start)), dot(radial, start));
+  return { centre, axis, start, elbow, angle, radius: length(radial) };
 }
+
+/**
+ * Joint values that turn the elbow by an angle round its circle while the hand rests; of the two ways to reach a pose the
+ * one nearer to q. Axes 1, 2, 3 meet in the shoulder and 5, 6, 7 in the wrist, each at right angles to the next: then the
+ * arm from shoulder to wrist turns as one body, the shoulder's joints take that turn, and the wrist's undo it.
+ */
+export function turnElbow(chain, q, angle) {
+  const directions = axes(chain).map(({ direction }) => direction);
+  const turn = (k, value = q[k]) => turnAbout(directions[k], value);
+  const [shoulder, elbow, wrist] = [multiply(turn(0), turn(1), turn(2)), turn(3), multiply(turn(4), turn(5), turn(6))];
+  const swivel = multiply(turnAbout(elbowCircle(chain, q).axis, angle), shoulder);
+  const undone = multiply(inverse(multiply(swivel, elbow)), shoulder, elbow, wrist);
+  return [
+    ...threeTurns(swivel, directions.slice(0, 3), q.slice(0, 3)),
+    q[3],
+    ...threeTurns(undone, directions.slice(4), q.slice(4)),
+  ];
+}
+
+/** Turn the elbow degree by degree until a joint would pass its limit: joint values, how far it got, and that joint, from 0, or null. */
+export function moveElbow(chain, q, angle) {
+  const count = Math.max(1, Math.ceil((Math.abs(angle) * 180) / Math.PI));
+  let now = q;
+  for (let k = 0; k < count; k++) {
+    const next = turnElbow(chain, now, angle / count);
+    const beyond = chain.joints.findIndex(({ limits }, i) => limits && (next[i] < limits[0] - 1e-9 || next[i] > limits[1] + 1e-9));
+    if (beyond >= 0) return { q: now, angle: (k * angle) / count, stopped: beyond };
+    now = next;
+  }
+  return { q: now, angle, stopped: null };
+}
+
+const turnAbout = (direction, angle) => motion({ point: [0, 0, 0], direction, kind: "R" }, angle);
+
+/** Angles about three directions, each at right angles to the next, whose turns make a rotation; those nearest to given ones. */
+function threeTurns(rotation, [first, second, third], near) {
+  const across = cross(second, first);
+  const image = apply(rotation, third);
+  const side = along(image, -dot(image, first), first);
+  const rest = Math.atan2(dot(third, across), dot(third, first));
+  const solutions = [1, -1].map((sense) => {
+    const a = length(side) < 1e-12 ? near[0] : Math.atan2(sense * dot(side, cross(first, across)), sense * dot(side, across));
+    const b = Math.atan2(sense * length(side), dot(image, first)) - rest;
+    const last = apply(inverse(multiply(turnAbout(first, a), turnAbout(second, b))), apply(rotation, second));
+    return [a, b, Math.atan2(dot(last, cross(third, second)), dot(last, second))].map((value, k) => value + 2 * Math.PI * Math.round((near[k] - value) / (2 * Math.PI)));
+  });
+  const far = (angles) => Math.max(...angles.map((value, k) => Math.abs(value - near[k])));
+  return solutions.reduce((one, other) => (far(other) < far(one) ? other : one));
+}
+
+/** A direction, turned as a pose turns. */
+const apply = (pose, v) => [0, 1, 2].map((i) => dot(pose[i].slice(0, 3), v));
 
 // Lines in space
 

@@ -1,10 +1,10 @@
 // {dh-robot}: a whole arm, its joints to move, its frames in both conventions, its tables and T.
 
 import { LiveFigure, Matrix, Slider, choice, make } from "./figure.js";
-import { along, column, elbowCircle, forward, frames, origin, parameters, subtract, length } from "./kinematics.js";
-import { Stage, orbit } from "./stage.js";
+import { add, along, column, cross, elbowCircle, forward, frames, length, moveElbow, origin, parameters, scale, subtract } from "./kinematics.js";
+import { Stage, hold, orbit } from "./stage.js";
 import { Table } from "./table.js";
-import { DEGREE, entry, html, point, short } from "./words.js";
+import { DEGREE, degrees, entry, html, point, short } from "./words.js";
 
 const FRAMES = ["classic", "modified", "both", "none"];
 const LONGEST_TRACE = 1500;
@@ -51,8 +51,10 @@ class DhRobot extends LiveFigure {
     this.stage = new Stage(this.picture, () => this.due());
     this.ground = make("div", { class: "stage", tabindex: 0, role: "group", "aria-label": "The arm. The arrow keys turn the view, Home turns it back." }, this.canvas, this.picture);
     orbit(this.ground, this.stage);
+    hold(this.ground, this.stage, () => this.#elbowGrip());
 
     this.sliders = this.q.map((value, k) => this.#slider(k));
+    this.elbow = this.hasElbow ? this.#elbowSlider() : null;
     this.matrix = new Matrix("Pose of the tool, <i>T</i>");
     this.sentence = make("p", { class: "sentence", "aria-hidden": "true" });
     this.tables = Object.fromEntries(["classic", "modified"].map((name) => [name, new Table(name, this.arms[name].joints.map(({ kind }) => kind))]));
@@ -61,11 +63,12 @@ class DhRobot extends LiveFigure {
       make("div", { class: "bar" }, this.choice.element, make("span", { class: "gap" }), reset, share),
       this.ground,
       make("div", { class: "bar more" }, this.tracing.element, ...(this.hasElbow ? [this.circling.element] : []), make("label", { class: "pick" }, "Show ", this.picker), this.legend),
-      make("div", { class: "sliders" }, ...this.sliders.map(({ element }) => element)),
+      make("div", { class: "sliders" }, ...this.sliders.map(({ element }) => element), ...(this.elbow ? [this.elbow.element] : [])),
       make("div", { class: "beside" }, this.matrix.element, this.sentence),
       make("div", { class: "tables" }, this.tables.classic.element, this.tables.modified.element),
     );
     this.#arrange();
+    this.#readElbow();
     new ResizeObserver(([{ contentRect: { width, height } }]) => {
       if (!width) return;
       this.stage.resize(width, height);
@@ -89,6 +92,14 @@ class DhRobot extends LiveFigure {
       symbol: `q_${k + 1}`, word: turns ? "turns" : "slides", style: "z", unit: turns ? "°" : this.arm.unit, heard: turns ? "degrees" : this.arm.unit,
       low: turns ? Math.ceil(low - 1e-9) : low, high: turns ? Math.floor(high + 1e-9) : high, step, digits: turns ? 0 : 3, value: this.q[k] * factor,
       changed: (value, done) => this.change(k, value / factor, done),
+    });
+  }
+
+  #elbowSlider() {
+    const value = elbowCircle(this.arm, this.q).angle / DEGREE;
+    return new Slider({
+      symbol: "ψ", word: "elbow, hand at rest", style: "elbow", unit: "°", heard: "degrees",
+      low: -180, high: 180, step: 1, digits: 1, value, changed: (degrees, done) => this.turnElbow(degrees, done),
     });
   }
 
@@ -130,8 +141,41 @@ class DhRobot extends LiveFigure {
     this.marked = this.reference;
     this.q[k] = value;
     this.moved = k;
+    this.#readElbow();
     if (done) this.reference = null;
     this.due();
+  }
+
+  /** Turn the elbow to an angle of its circle, in degrees, as far as the joints allow. */
+  turnElbow(degrees, done) {
+    const { q, angle, stopped } = moveElbow(this.arm, this.q, degrees * DEGREE - this.elbowAngle);
+    this.q = q;
+    this.marked = null;
+    this.moved = null;
+    this.elbowAngle += angle;
+    this.turned = { stopped };
+    this.circling.box.checked = true;
+    this.sliders.forEach((slider, k) => slider.set(q[k] / DEGREE));
+    if (stopped !== null && done) this.elbow.set(this.elbowAngle / DEGREE);
+    this.due();
+  }
+
+  /** Where the elbow is, after joints were moved one by one. */
+  #readElbow() {
+    this.turned = null;
+    if (!this.elbow) return;
+    this.elbowAngle = elbowCircle(this.arm, this.q).angle;
+    this.elbow.set(this.elbowAngle / DEGREE);
+  }
+
+  #elbowGrip() {
+    const { centre, axis, start, radius } = elbowCircle(this.arm, this.q);
+    const side = cross(axis, start);
+    return {
+      value: this.elbowAngle,
+      around: (angle) => add(centre, add(scale(radius * Math.cos(angle), start), scale(radius * Math.sin(angle), side))),
+      changed: (angle, done) => this.elbow.move(angle / DEGREE, done),
+    };
   }
 
   reset() {
@@ -166,6 +210,7 @@ class DhRobot extends LiveFigure {
 
   #showValues() {
     this.sliders.forEach((slider, k) => slider.set(this.arm.joints[k].kind === "R" ? this.q[k] / DEGREE : this.q[k]));
+    this.#readElbow();
   }
 
   /** The joint values, for cells of the page. */
@@ -293,7 +338,7 @@ class DhRobot extends LiveFigure {
     if (radius < 1e-6 * this.size) return;
     this.stage.circle("guides", "circle", centre, axis, radius, "circle");
     this.stage.line("guides", "circle radius", centre, elbow, "guide");
-    this.stage.dot("circle elbow", elbow, "marked");
+    this.stage.handle("elbow", elbow, "marked");
   }
 
   #remember(p) {
@@ -311,6 +356,11 @@ class DhRobot extends LiveFigure {
       const n = joints.length;
       const where = (name, row) => (row >= 1 && row <= n ? `row ${row} of the ${name} table` : `no row of the ${name} table, but in the ${row === 0 ? "base" : "tool"}`);
       words = `a_${k} and α_${k} of link ${k} stand in ${where("classic", k)}, and in ${where("modified", k + 1)}.`;
+    }
+    else if (this.turned) {
+      words = `The elbow is at ψ = ${degrees(this.elbowAngle, 0)} of its circle; the tool rests at ${point(origin(tool), this.digits)} ${unit}.`;
+      const { stopped } = this.turned;
+      if (stopped !== null) words = `Joint ${stopped + 1} is at its limit, ${degrees(this.q[stopped], 0)}: the elbow goes no farther. The tool rests.`;
     }
     if (words === this.told) return;
     this.told = words;

@@ -15,7 +15,7 @@ from truth import silent_figures
 pytestmark = pytest.mark.book
 
 OF_SPHINX = {"index.html", "search.html", "genindex.html", "py-modindex.html"}
-EXTRAS = {".buildinfo", ".nojekyll", "objects.inv", "searchindex.js"}
+EXTRAS = {".buildinfo", ".nojekyll", "objects.inv", "searchindex.js", "manifest.webmanifest", "sw.js"}
 
 
 def listed(root: Path) -> dict[str, Path]:
@@ -41,7 +41,7 @@ def unexpected(files: set[str], pages: dict[str, Path]) -> set[str]:
     allowed |= {f"notebooks/{source.stem}.ipynb" for source in pages.values() if source.parent.name == "book"}
     static = re.compile(
         r"_static/.*\.(css|js|svg|png|woff2|LICENSE\.txt)|_images/[\w.-]+\.(svg|png)|_downloads/[0-9a-f]{32}/[\w.-]+"
-        r"|live/(link|robot|place|space)\.js"
+        r"|live/(link|robot|place|space)\.js|icons/icon(-192\.png|-512\.png|-masked-512\.png|\.svg)"
     )
     return {name for name in files - allowed if not static.fullmatch(name)}
 

@@ -283,6 +283,100 @@ def test_the_elbow_circle_keeps_its_distance_from_shoulder_and_wrist(convention:
         assert abs(np.linalg.norm(point - wrist) - fore) < TOLERANCE
 
 
+#: Like the PA10, but counted from another pose, so that axes 1 and 3, 5 and 7 are not parallel at q = 0.
+OTHER_ZEROS = Chain(
+    [
+        Revolute(d=0.3, alpha=-math.pi / 2, offset=0.2),
+        Revolute(alpha=math.pi / 2, offset=0.7, sign=-1),
+        Revolute(d=0.4, alpha=-math.pi / 2, offset=-0.4),
+        Revolute(alpha=math.pi / 2, offset=0.3),
+        Revolute(d=0.5, alpha=-math.pi / 2, offset=1.2),
+        Revolute(alpha=math.pi / 2, offset=-0.9),
+        Revolute(d=0.1, offset=0.5, sign=-1),
+    ],
+    "classic",
+)
+SHOULDER_WRIST = {
+    "pa10": robots.pa10_7c(),
+    "pa10 modified": robots.pa10_7c("modified"),
+    "iiwa": robots.iiwa14(),
+    "other zeros": OTHER_ZEROS,
+}
+
+
+def elbow_faults(arm: Chain, module: Path = MODULE) -> list[str]:
+    """Turn the elbow at random, at singular poses too; say where dhlib finds the hand moved or the elbow not turned."""
+    rng = np.random.default_rng(17)
+    poses = [rng.uniform(-2, 2, 7) for _ in range(150)] + [
+        rng.choice([-1.5, 0.0, 1e-9, math.pi / 2], 7) for _ in range(50)
+    ]
+    poses = [np.array([*q[:3], q[3] if abs(math.sin(q[3])) > 0.01 else 1.0, *q[4:]]) for q in poses]
+    turns = [float(rng.choice([rng.uniform(-3, 3), 1e-4, math.pi])) for _ in poses]
+    data, frames_on_axes = chain_data(arm), arm.to_modified().frames
+
+    def elbow_of(q: Any) -> np.ndarray:
+        """Where axes 3 and 4 meet."""
+        poses = frames_on_axes(np.asarray(q))
+        lines = [Axis(pose[:3, 3], pose[:3, 2]) for pose in poses[3:5]]
+        return common_normal(*lines).before
+
+    turned = ask([["turnElbow", data, q.tolist(), by] for q, by in zip(poses, turns, strict=True)], module)
+    circles = ask([["elbowCircle", data, q.tolist()] for q in poses], module)
+    faults = []
+    for q, by, moved, circle in zip(poses, turns, turned, circles, strict=True):
+        if (hand := np.abs(arm.fk(moved) - arm.fk(q)).max()) > 1e-9:
+            faults.append(f"{q}: the hand moves by {hand}")
+        here, there = elbow_of(q), elbow_of(moved)
+        axis = Axis(np.array(circle["centre"]), np.array(circle["axis"]))
+        if np.abs(axis.motion(by)[:3] @ [*here, 1] - there).max() > 1e-9:
+            faults.append(f"{q}: the elbow is not turned by {by}")
+        if by == 1e-4 and np.sin(q[[1, 5]]).min() > 0.1 and np.abs(np.array(moved) - q).max() > 0.01:
+            faults.append(f"{q}: a small turn jumps to {moved}")
+    return faults
+
+
+@pytest.mark.parametrize("name", SHOULDER_WRIST)
+def test_the_hand_rests_while_the_elbow_goes_round(name: str) -> None:
+    assert elbow_faults(SHOULDER_WRIST[name]) == []
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("undone = multiply(inverse(multiply(swivel, elbow))", "undone = multiply(inverse(multiply(elbow, swivel))"),
+        ("elbowCircle(chain, q).axis, angle)", "elbowCircle(chain, q).axis, -angle)"),
+        ("- rest;", "+ rest;"),
+        ("dot(last, cross(third, second))", "dot(last, cross(second, third))"),
+        ("far(other) < far(one)", "far(other) > far(one)"),
+        ("length(side) < 1e-12", "length(side) < 1e-3"),
+    ],
+)
+def test_a_hand_that_moves_would_be_found(tmp_path: Path, right: str, wrong: str) -> None:
+    source = MODULE.read_text("utf-8")
+    assert source.count(right) == 1
+    spoilt = tmp_path / "kinematics.mjs"
+    spoilt.write_text(source.replace(right, wrong), "utf-8")
+    assert elbow_faults(OTHER_ZEROS, spoilt) or elbow_faults(robots.pa10_7c(), spoilt)
+
+
+def test_the_elbow_stops_where_a_joint_would_pass_its_limit() -> None:
+    arm = robots.pa10_7c()
+    q = np.radians([0, 40, 0, 70, 0, 50, 0])
+    ((round_once, short_way),) = [
+        ask([["moveElbow", chain_data(arm), q.tolist(), by] for by in (math.pi, math.radians(30))])
+    ]
+    assert round_once["stopped"] == 1
+    assert 0 < round_once["angle"] < math.pi
+    for moved in (round_once, short_way):
+        assert np.abs(arm.fk(moved["q"]) - arm.fk(q)).max() < 1e-9
+        for value, joint in zip(moved["q"], arm.joints, strict=True):
+            assert joint.limits is not None
+            assert joint.limits[0] - 1e-9 <= value <= joint.limits[1] + 1e-9
+    assert short_way["stopped"] is None
+    (circle,) = ask([["elbowCircle", chain_data(arm), short_way["q"]]])
+    assert circle["angle"] == pytest.approx(math.radians(30), abs=1e-9)
+
+
 def test_export_keeps_every_digit() -> None:
     arm = Chain([Revolute(d=1 / 3, a=0.1, alpha=0.1 + 0.2, limits=(-1, 2), sign=-1)], "modified", name="Λ")
     read = json.loads(chain_json(arm))

@@ -457,7 +457,7 @@ def test_reset_brings_everything_back(page: Any) -> None:
 def test_every_joint_end_shows_the_pose_of_dhlib(page: Any, figure: str, arm: Chain) -> None:
     wake(page)
     sliders = page.locator(f"{figure} input[type=range]")
-    assert sliders.count() == arm.n
+    assert sliders.count() == arm.n + page.locator(f"{figure} .slider.elbow").count()
     for k in range(arm.n):
         for key, end in (("Home", 0), ("End", 1)):
             sliders.nth(k).press(key)
@@ -503,6 +503,47 @@ def test_trace_and_elbow_circle_are_drawn(page: Any) -> None:
     assert page.locator(f"{figure} path.trace").count() == 1
     assert page.locator(f"{figure} path.circle").count() == 1
     assert page.locator("#live-robot-2").get_by_label("elbow circle").count() == 0
+
+
+def test_the_elbow_goes_round_while_the_hand_rests(page: Any) -> None:
+    """By slider and by its handle, from end to end; a joint at its limit stops it, and the page says which."""
+    figure, arm = "#live-fig-pa10", robots.pa10_7c()
+    wake(page)
+    hand = arm.fk(page.evaluate(f"document.querySelector('{figure}').joints"))
+
+    def rests() -> list[float]:
+        q: list[float] = page.evaluate(f"document.querySelector('{figure}').joints")
+        assert np.abs(arm.fk(q) - hand).max() < 1e-9
+        assert np.abs(shown_matrix(page, figure) - hand).max() < 6e-4
+        for value, joint in zip(q, arm.joints, strict=True):
+            assert joint.limits[0] - 1e-9 <= value <= joint.limits[1] + 1e-9
+        return q
+
+    slider = page.locator(f"{figure} .slider.elbow input[type=range]")
+    first = rests()
+    for key in ("ArrowRight", "PageUp", "End", "Home"):
+        slider.press(key)
+        before, first = first, rests()
+        assert np.abs(np.subtract(first, before)).max() > 0.01, key
+    assert "Joint 2 is at its limit, 91°" in page.locator(f"{figure} .sentence").inner_text()
+    assert abs(float(slider.input_value())) < 180
+    assert page.locator(f"{figure} path.circle").count() == 1
+    assert "limit" in (page.locator(f"{figure} svg").first.get_attribute("aria-label") or "")
+
+    page.locator(figure).get_by_role("button", name="Reset").click()
+    drawn(page)
+    page.locator(f"{figure} .stage").scroll_into_view_if_needed()
+    box = page.locator(f"{figure} [data-grip=elbow]").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 40, box["y"] + 40, steps=4)
+    page.mouse.up()
+    assert abs(page.evaluate(f"document.querySelector('{figure}').elbowAngle")) > 0.1
+    rests()
+    # a joint moved by itself moves the hand, and the elbow's slider follows
+    page.locator(f"{figure} input[type=range]").nth(3).press("PageUp")
+    q = page.evaluate(f"document.querySelector('{figure}').joints")
+    assert np.abs(arm.fk(q) - hand).max() > 0.01
 
 
 def test_a_cell_can_set_and_read_the_joints(page: Any) -> None:
