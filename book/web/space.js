@@ -16,7 +16,9 @@ const SHAPES = {
 
 globalThis.DhSpace = class {
   constructor(canvas) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    const context = canvas.getContext("webgl2", { antialias: true, alpha: true, stencil: false });
+    if (!context) throw new Error("no WebGL"); // three.js would complain aloud
+    this.renderer = new WebGLRenderer({ canvas, context });
     this.scene = new Scene();
     this.camera = new OrthographicCamera();
     this.sun = new DirectionalLight(0xffffff, 2.2);
