@@ -528,7 +528,7 @@ def test_the_elbow_goes_round_while_the_hand_rests(page: Any) -> None:
     assert "Joint 2 is at its limit, 91°" in page.locator(f"{figure} .sentence").inner_text()
     assert abs(float(slider.input_value())) < 180
     assert page.locator(f"{figure} path.circle").count() == 1
-    assert "limit" in (page.locator(f"{figure} svg").first.get_attribute("aria-label") or "")
+    assert "limit" in (page.locator(f"{figure} .stage svg").get_attribute("aria-label") or "")
 
     page.locator(figure).get_by_role("button", name="Reset").click()
     drawn(page)
