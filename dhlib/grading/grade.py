@@ -13,7 +13,7 @@ from dhlib.grading.course.papers import NotAssigned, Paper, check_tag, load_pape
 from dhlib.grading.exercise import Exercise, find_exercise
 from dhlib.grading.marking import Marker
 from dhlib.grading.marks import OPEN, Mark
-from dhlib.grading.notebook import Cell, load_notebook, merge, read_cells
+from dhlib.grading.notebook import Cell, damage, load_notebook, merge, read_cells
 from dhlib.grading.wall import Limits, Outcome, Sandbox
 
 GRADED, INCOMPLETE, UNREADABLE, FAILED = "graded", "stopped", "unreadable", "failed"
@@ -111,7 +111,8 @@ def grade_notebook(
         sandbox = sandbox or stack.enter_context(Sandbox())
         outcome = sandbox.run(cells, requests, limits)
     marks = [with_error(mark, cells, outcome) for mark in Marker(exercise).mark_all(outcome.readings)]
-    return Result(path, INCOMPLETE if outcome.note else GRADED, outcome.note, exercise, marks)
+    message = " ".join(filter(None, (damage(notebook), outcome.note)))
+    return Result(path, INCOMPLETE if outcome.note else GRADED, message, exercise, marks)
 
 
 def _paper(

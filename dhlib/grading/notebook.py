@@ -6,8 +6,11 @@ A cell of an exercise carries ``{"dh": {"role": …, "part": …}}`` in its meta
 
 from __future__ import annotations
 
+import codecs
 import json
+import os
 import re
+import stat
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,8 +20,28 @@ from dhlib.errors import DHError
 
 #: A larger file is no exercise; what makes notebooks large is stored output, which is not read anyway.
 LARGEST_FILE = 50_000_000
+MOST_CELLS = 2000
+#: An integer of more digits stands in no notebook that was not made to break its reader.
+LONGEST_INTEGER = 20
+#: Where a notebook says what is wrong with it as a file, although it can be read.
+DAMAGE = "dh_damage"
+#: How files begin that are handed in for notebooks.
+KINDS = {
+    b"%PDF": "a PDF",
+    b"PK\x03\x04": "a zip archive, or an office document",
+    b"\x1f\x8b": "a compressed archive",
+    b"Rar!": "an archive",
+    b"7z\xbc\xaf": "an archive",
+    b"\x89PNG": "an image",
+    b"\xff\xd8\xff": "an image",
+    b"\xd0\xcf\x11\xe0": "an office document",
+    b"<": "a web page",
+}
+BYTE_ORDERS = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
+CELLS = re.compile(r'"cells"[ \t\r\n]*:[ \t\r\n]*\[')
+BETWEEN = re.compile(r"[ \t\r\n]*,?[ \t\r\n]*")
 #: The call that every check cell holds, to find the cells of a notebook that lost its metadata.
-CHECK_CALL = re.compile(r"""^\s*check\(\s*["'](\w+)["']\s*,\s*(\w+)\s*\)\s*$""", re.MULTILINE)
+CHECK_CALL = re.compile(r"""^[ \t]*check\([ \t]*["'](\w+)["'][ \t]*,[ \t]*(\w+)[ \t]*\)[ \t]*$""", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -51,11 +74,12 @@ def load_notebook(path: str | Path) -> dict[str, Any]:
     """
     path = Path(path)
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise DHError(
-                f"{path.name} is larger than {LARGEST_FILE // 1_000_000} MB; clear its outputs and save it again."
-            )
-        data = path.read_bytes()
+        # What it is, is asked of the open file: a name may stand for another file a moment later, and a pipe waits.
+        fd = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+        with open(fd, "rb") as file:
+            if not stat.S_ISREG(os.fstat(fd).st_mode):
+                raise DHError(f"{path.name} is no file.")
+            data = file.read(LARGEST_FILE + 1)
     except OSError as error:
         raise DHError(f"{path.name} cannot be opened: {error.strerror or type(error).__name__}.") from None
     return parse_notebook(data, path.name)
@@ -73,21 +97,78 @@ def parse_notebook(data: bytes, name: str) -> dict[str, Any]:
     --------
     >>> parse_notebook(b"%PDF", "essay.ipynb")
     Traceback (most recent call last):
-    dhlib.errors.DHError: essay.ipynb is no notebook, or was cut off: it cannot be read as JSON.
+    dhlib.errors.DHError: essay.ipynb is no notebook but a PDF. Was another file handed in?
     """
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise DHError(f"{name} is no notebook: it is not text. Was another file handed in?") from None
+    if len(data) > LARGEST_FILE:
+        raise DHError(f"{name} is larger than {LARGEST_FILE // 1_000_000} MB; clear its outputs and save it again.")
+    text = _decode(data, name)
     if not text.strip():
         raise DHError(f"{name} is empty.")
+    wrong = ""
     try:
-        notebook = json.loads(text)
+        notebook = json.loads(text, parse_int=_integer)
     except (ValueError, RecursionError):
-        raise DHError(f"{name} is no notebook, or was cut off: it cannot be read as JSON.") from None
+        notebook = {"cells": _whole_cells(text)}
+        if not notebook["cells"]:
+            raise DHError(f"{name} is no notebook, or was cut off: it cannot be read as JSON.") from None
+        wrong = f"{name} was cut off or damaged: only its first {len(notebook['cells'])} cells could be read."
     if not isinstance(notebook, dict) or not _raw_cells(notebook):
         raise DHError(f"{name} holds no cells; it should be a Jupyter notebook.")
-    return notebook
+    if len(_raw_cells(notebook)) > MOST_CELLS:
+        raise DHError(f"{name} holds more than {MOST_CELLS} cells, which no exercise does.")
+    if language := _other_language(notebook):
+        wrong = f"{name} says that it is written in {language}; it was run as Python."
+    notebook.pop(DAMAGE, None)
+    return {**notebook, DAMAGE: wrong} if wrong else notebook
+
+
+def damage(notebook: dict[str, Any]) -> str:
+    """What is wrong with the file of a notebook that could be read all the same; empty if nothing is."""
+    return str(notebook.get(DAMAGE, ""))
+
+
+def _decode(data: bytes, name: str) -> str:
+    for mark, encoding in BYTE_ORDERS.items():
+        if data.startswith(mark):
+            return data.decode(encoding, errors="replace")
+    start = data[:4096].lstrip(codecs.BOM_UTF8).lstrip()
+    if not start.startswith(b"{"):
+        for magic, kind in KINDS.items():
+            if start.startswith(magic):
+                raise DHError(f"{name} is no notebook but {kind}. Was another file handed in?")
+        if b"\0" in start:
+            raise DHError(f"{name} is no notebook: it is not text. Was another file handed in?")
+    # A byte that is no UTF-8 stands in an output or a comment; it costs no answer.
+    return data.decode("utf-8-sig", errors="replace")
+
+
+def _integer(text: str) -> int:
+    return int(text) if len(text) <= LONGEST_INTEGER else 0
+
+
+def _whole_cells(text: str) -> list[Any]:
+    """The cells before the place where a file was cut off or damaged."""
+    begin = CELLS.search(text)
+    decoder = json.JSONDecoder(parse_int=_integer)
+    cells: list[Any] = []
+    at = begin.end() if begin else len(text)
+    while len(cells) <= MOST_CELLS:
+        at = BETWEEN.match(text, at).end()  # type: ignore[union-attr]  (it matches nothing too)
+        try:
+            cell, at = decoder.raw_decode(text, at)
+        except (ValueError, RecursionError):
+            break
+        cells.append(cell)
+    return cells
+
+
+def _other_language(notebook: dict[str, Any]) -> str:
+    """The language that the notebook says it is written in, if that is not Python."""
+    metadata = _dict(notebook.get("metadata"))
+    language = _dict(metadata.get("kernelspec")).get("language") or _dict(metadata.get("language_info")).get("name")
+    if not isinstance(language, str) or language.lower() in ("", "python", "ipython", "python3"):
+        return ""
+    return "".join(c for c in language if c.isalnum() or c in "+#")[:30] or "another language"
 
 
 def merge(pristine: Iterable[Cell], submission: Iterable[Cell]) -> list[Cell]:
@@ -116,7 +197,7 @@ def merge(pristine: Iterable[Cell], submission: Iterable[Cell]) -> list[Cell]:
             answers.setdefault(cell.part, []).append(cell)
         elif (cell.role, cell.part) in places:
             place = (cell.role, cell.part)
-        elif cell.code and not cell.known:
+        elif cell.code and not cell.known and cell.source.strip():
             extras.setdefault(place, []).append(cell)
     merged: list[Cell] = []
     for k, cell in enumerate(pristine):
@@ -139,7 +220,7 @@ def recover_roles(cells: Iterable[Cell]) -> list[Cell]:
     for k, cell in enumerate(listed):
         if cell.code and (call := CHECK_CALL.search(cell.source)):
             part = call[1]
-            sets = re.compile(rf"^\s*(?:{part}\b[^=\n]*=(?!=)|def\s+{part}\b)", re.MULTILINE)
+            sets = re.compile(rf"^[ \t]*(?:{part}\b[^=\n]*=(?!=)|def\s+{part}\b)", re.MULTILINE)
             for j in range(k, -1, -1):
                 if listed[j].code and sets.search(listed[j].source):
                     listed[j] = Cell(listed[j].source, True, "answer", part)
@@ -154,7 +235,7 @@ def _raw_cells(notebook: dict[str, Any]) -> list[Any]:
     if cells is None:  # nbformat 3 keeps them in worksheets
         sheets = notebook.get("worksheets")
         cells = (
-            [cell for sheet in sheets if isinstance(sheet, dict) for cell in sheet.get("cells", ())]
+            [cell for sheet in sheets if isinstance(sheet, dict) for cell in _list(sheet.get("cells"))]
             if isinstance(sheets, list)
             else []
         )
@@ -167,6 +248,8 @@ def _read_cell(cell: Any) -> Cell:
     source = cell.get("source", cell.get("input", ""))
     if isinstance(source, list):
         source = "".join(line for line in source if isinstance(line, str))
+    if isinstance(source, str):  # half of a pair of surrogates is no text, and nothing can write it
+        source = source.encode("utf-8", "replace").decode("utf-8")
     role, part = about.get("role"), about.get("part")
     return Cell(
         source if isinstance(source, str) else "",
@@ -178,3 +261,7 @@ def _read_cell(cell: Any) -> Cell:
 
 def _dict(value: Any) -> dict[str, Any]:
     return value if isinstance(value, dict) else {}
+
+
+def _list(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else []
