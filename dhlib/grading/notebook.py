@@ -153,9 +153,9 @@ def _whole_cells(text: str) -> list[Any]:
     cells: list[Any] = []
     at = begin.end() if begin else len(text)
     while len(cells) <= MOST_CELLS:
-        at = BETWEEN.match(text, at).end()  # type: ignore[union-attr]  (it matches nothing too)
+        between = BETWEEN.match(text, at)
         try:
-            cell, at = decoder.raw_decode(text, at)
+            cell, at = decoder.raw_decode(text, between.end() if between else at)
         except (ValueError, RecursionError):
             break
         cells.append(cell)

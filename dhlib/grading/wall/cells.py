@@ -60,14 +60,18 @@ class Keeper:
         With ``cell_seconds``.
     shell
         Pristine; only states use it.
-    answers, notices : int
-        File descriptors: what states say to the controller, and what the keeper does.
+    answers : int
+        File descriptor: what states say to the controller.
+    own : tuple of int
+        Those that states do not get: what the keeper says to the controller, and what shows the server that it lives.
     """
 
-    def __init__(self, job: dict[str, Any], limits: dict[str, Any], shell: Any, answers: int, notices: int) -> None:
+    def __init__(
+        self, job: dict[str, Any], limits: dict[str, Any], shell: Any, answers: int, own: tuple[int, int]
+    ) -> None:
         self.job, self.shell = job, shell
         self.seconds = float(limits["cell_seconds"])
-        self.answers, self.notices = answers, notices
+        self.answers, self.own = answers, own
         self.reports = 0
 
     def run(self, ends: tuple[socket.socket, socket.socket]) -> None:
@@ -80,7 +84,8 @@ class Keeper:
         if state == 0:
             del self.job
             self.socket.close()
-            os.close(self.notices)
+            for fd in self.own:
+                os.close(fd)
             live(theirs, cells, self.shell, self.answers, self.seconds)
         theirs.close()
         try:
@@ -181,7 +186,7 @@ class Keeper:
         return 0, None
 
     def _notice(self, **notice: Any) -> None:
-        os.write(self.notices, json.dumps(notice).encode() + b"\n")
+        os.write(self.own[0], json.dumps(notice).encode() + b"\n")
 
 
 def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, answers: int, seconds: float) -> None:

@@ -167,6 +167,7 @@ class Box:
     def __init__(self, outer: Outer, filter_: bytes, limits: Limits) -> None:
         self.group = ControlGroup(limits)
         self.control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.jobs = 0
         self.others = _processes_that_count()
         said = tempfile.TemporaryFile()  # noqa: SIM115
         self.process = subprocess.Popen(
@@ -203,7 +204,7 @@ class Box:
 
     def memory(self) -> int:
         """What all processes behind the wall take together, in bytes; shared pages count once."""
-        return sum(_proportional(pid) for pid in _descendants(self.process.pid))
+        return sum(_proportional(pid) for pid in descendants(self.process.pid))
 
     def close(self) -> None:
         """End it."""
@@ -234,7 +235,9 @@ class Run:
             to_box = open(job_in, "wb", buffering=0)  # noqa: SIM115
             ours.callback(to_box.close)
             theirs = [job_out, answers_in, notices_in]
-            limits = asdict(self.limits) | {"others": self.box.others, "base": SERVER_MEMORY}
+            self.box.jobs += 1
+            limits = asdict(self.limits)
+            limits |= {"others": self.box.others, "base": SERVER_MEMORY, "job": self.box.jobs}
             try:
                 socket.send_fds(self.box.control, [json.dumps(limits).encode()], theirs)
             except OSError:
@@ -272,7 +275,7 @@ class Run:
             for fd in (fd for fd in ready if fd in self.heard):
                 self._hear(fd)
             if control.fileno() in ready:
-                if not control.recv(LONGEST_MESSAGE):
+                if control.recv(LONGEST_MESSAGE) != json.dumps({"ended": self.box.jobs}).encode():
                     raise Crashed
                 for fd in [*self.heard]:  # nobody is left who could write, so what is there is all there will be
                     while self._hear(fd):
@@ -306,7 +309,7 @@ class Run:
             self.ended = time.monotonic()
             self.outcome.note = note
             with contextlib.suppress(OSError):
-                self.box.control.send(b"end")
+                self.box.control.send(f"end {self.box.jobs}".encode())
 
     def _answer(self, message: Any) -> None:
         """What a student's process says: of its own answers, and nothing else."""
@@ -363,7 +366,7 @@ def _processes_that_count() -> int:
     return 4096
 
 
-def _descendants(pid: int) -> list[int]:
+def descendants(pid: int) -> list[int]:
     """The process and all that it started, directly or not."""
     found, waiting = [], [pid]
     while waiting:

@@ -27,6 +27,10 @@ from dhlib.grading.wall.shell import make_shell
 
 LONGEST_MESSAGE = 1 << 18
 FILES = 3
+#: The order to end a job, before its number.
+END = b"end "
+#: More than a server ever has open.
+MOST_FILES = 1 << 16
 LARGEST_JOB = 16_000_000
 
 
@@ -87,8 +91,7 @@ class Server:
         if os.fork() == 0:
             # Nothing here may return into the loop of the server.
             try:
-                os.close(alive)
-                os.close(told)
+                _keep_open({0, 1, 2, held, tell, *files})  # above all not the socket to the controller
                 self._enter(limits, files, held, tell)
             finally:
                 os._exit(1)
@@ -98,18 +101,22 @@ class Server:
             first = int(heard.read() or 0)
         while True:
             ready, _, _ = select.select([alive, self.control.fileno()], [], [])
-            if alive in ready:
+            if alive in ready and not os.read(alive, LONGEST_MESSAGE):
                 break
-            if not self.control.recv(LONGEST_MESSAGE):
+            if self.control.fileno() not in ready:
+                continue
+            order = self.control.recv(LONGEST_MESSAGE)
+            if not order:
                 os._exit(0)  # and with this process all others behind the wall
-            if first:
+            # An order for an earlier job may have come just as that one ended by itself.
+            if first and order == END + str(limits["job"]).encode():
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(first, signal.SIGKILL)
         os.close(alive)
         with contextlib.suppress(ChildProcessError):
             while True:
                 os.waitpid(-1, 0)
-        self.control.send(json.dumps({"ended": True}).encode())
+        self.control.send(json.dumps({"ended": limits["job"]}).encode())
 
     def _enter(self, limits: dict[str, Any], files: list[int], held: int, tell: int) -> None:
         """In a child of the server: go behind the second wall, and keep a notebook there."""
@@ -135,11 +142,21 @@ class Server:
             inner.drop_rights()
             inner.landlock()
             inner.filter_calls(self.filter)
-            Keeper(job, limits, self.shell, answers, notices).run(ends)
+            Keeper(job, limits, self.shell, answers, (notices, held)).run(ends)
         except Exception:
             os.write(notices, json.dumps({"failed": traceback.format_exc()[-900:]}).encode() + b"\n")
             os._exit(1)
         os._exit(0)
+
+
+def _keep_open(files: set[int]) -> None:
+    """Close all files but these."""
+    first = 0
+    for fd in sorted(files):
+        if first < fd:  # an empty range is taken for all there are
+            os.closerange(first, fd)
+        first = fd + 1
+    os.closerange(first, MOST_FILES)
 
 
 def main() -> None:
