@@ -23,7 +23,7 @@ from dhlib.grading.closing import close_parts
 from dhlib.grading.course.papers import NotAssigned, Tag, check_tag, read_tag
 from dhlib.grading.grade import FAILED, GRADED, INCOMPLETE, UNREADABLE, with_error
 from dhlib.grading.marking import Marker
-from dhlib.grading.notebook import Cell, merge, parse_notebook, read_cells
+from dhlib.grading.notebook import Cell, damage, merge, parse_notebook, read_cells
 from dhlib.grading.wall import Limits, Outcome
 
 #: A longer answer is not kept: nobody would look at it, and it says nothing of a misconception.
@@ -123,6 +123,7 @@ class Prepared:
     asked: Asked
     claims: str
     cells: Sequence[Cell]
+    damage: str = ""
 
 
 class Grader:
@@ -162,7 +163,8 @@ class Grader:
             says = f"{work.name} does not say which exercise it is; name it with --exercise NAME."
             return self._unreadable(work, says, claims)
         asked = self.catalogue.asked(name, tag.student)
-        return Prepared(work, asked, claims, close_parts(merge(asked.pristine, cells), asked.exercise))
+        merged = close_parts(merge(asked.pristine, cells), asked.exercise)
+        return Prepared(work, asked, claims, merged, damage(notebook))
 
     def finish(self, prepared: Prepared, outcome: Outcome, seconds: float) -> Graded:
         """Mark what came out of the box."""
@@ -172,7 +174,7 @@ class Grader:
         return Graded(
             number=prepared.work.number,
             status=INCOMPLETE if outcome.note else GRADED,
-            message=outcome.note[:LONGEST_MESSAGE],
+            message=" ".join(filter(None, (prepared.damage, outcome.note)))[:LONGEST_MESSAGE],
             exercise=exercise.name,
             claims=prepared.claims,
             marks=[

@@ -79,7 +79,7 @@ class Keeper:
         self.socket, theirs = ends
         cells = self.job["cells"]
         # What is asked about the answers stays here until it is: a cell need not know.
-        asked = [self.job["requests"].get(c["part"]) if c["role"] == "check" else None for c in cells]
+        requests = self.job["requests"]
         state = os.fork()
         if state == 0:
             del self.job
@@ -89,16 +89,26 @@ class Keeper:
             live(theirs, cells, self.shell, self.answers, self.seconds)
         theirs.close()
         try:
-            for k, request in enumerate(asked):
-                state = self._step(k, request, state)
+            ours: list[int] = []  # cells of the exercise that wait to run with the next one
+            for k, cell in enumerate(cells):
+                if cell["role"] == "setup":
+                    ours.append(k)
+                elif cell["role"] == "check":
+                    if ours:
+                        state, ours = self._step(ours, None, state), []
+                    state = self._step([k], requests.get(cell["part"], {}), state)
+                else:
+                    before, state = state, self._step([*ours, k], None, state)
+                    ours = ours if state == before else []
         except Lost as lost:
             self._notice(lost=str(lost))
         else:
             self._notice(done=True)
 
-    def _step(self, k: int, request: Any, state: int) -> int:
-        """Run cell k from a state; return the next state."""
-        self._send({"run": k, "request": request})
+    def _step(self, run: list[int], request: Any, state: int) -> int:
+        """Run cells from a state, or read an answer; return the next state, the same if the last cell was lost."""
+        k = run[-1]
+        self._send({"run": run, "request": request})
         deadline = time.monotonic() + self.seconds + GRACE
         runner = 0
         while True:
@@ -213,22 +223,23 @@ def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, an
             if child:
                 asked = load(command)
                 status = wait(child, 0)[1]
-                report("read" if asked["request"] is not None and status == 0 else "died", asked["run"])
+                report("read" if asked["request"] is not None and status == 0 else "died", asked["run"][-1])
                 continue
             me = own()
             group(0, 0)
             asked = load(command)
-            k = asked["run"]
+            k = asked["run"][-1]
             report("begin", k)
             if asked["request"] is not None:
                 part = cells[k]["part"]
                 answer({"part": part, "reading": read_part(shell, part, asked["request"], seconds)})
                 leave(0)
-            error = run_cell(shell, cells[k]["source"], seconds)
-            if own() != me:
-                leave(0)
-            if error is not None:
-                answer({"cell": k, "error": error})
+            for one in asked["run"]:
+                error = run_cell(shell, cells[one]["source"], seconds)
+                if own() != me:
+                    leave(0)
+                if error is not None:
+                    answer({"cell": one, "error": error})
             report("done", k)
     except BaseException:
         leave(1)
