@@ -17,6 +17,7 @@ from dhlib.grading.exercise import Part
 from dhlib.grading.grade import GRADED, Result, grade_notebook
 from dhlib.grading.marks import Mark
 from dhlib.grading.wall import Limits, Sandbox
+from dhlib.grading.wall.limits import UNSAFE
 
 
 class NotYet(Exception):
@@ -27,6 +28,7 @@ class GradedNotebook(pytest.File):
     """A notebook, graded once."""
 
     _result: Result | None = None
+    unsafe = False
 
     @property
     def result(self) -> Result:
@@ -34,6 +36,7 @@ class GradedNotebook(pytest.File):
         if self._result is None:
             option = self.config.option
             with own_box(Limits.of(option.dh_timeout)) as box:
+                self.unsafe = box.unsafe
                 self._result = grade_notebook(
                     self.path, option.dh_exercise, option.dh_exercises, sandbox=box, key=option.dh_key
                 )
@@ -63,6 +66,7 @@ class GradedPart(pytest.Item):
     def runtest(self) -> None:
         """Pass if nothing is left to do."""
         mark = self.parent.mark(self.part.id)
+        self.user_properties.append(("dh_unsafe", self.parent.unsafe))
         self.user_properties += [("dh_points", mark.points), ("dh_out_of", mark.out_of), ("dh_verdict", mark.verdict)]
         if not mark.passed:
             note = self.parent.result.message if self.parent.result.status != GRADED else ""
@@ -98,12 +102,16 @@ class Grading:
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
         """Sum up the points."""
         points: dict[str, list[float]] = {}
+        unsafe = False
         for reports in terminalreporter.stats.values():
             for report in reports:
                 earned = dict(getattr(report, "user_properties", ()))
+                unsafe |= bool(earned.get("dh_unsafe"))
                 if getattr(report, "when", "") == "call" and "dh_points" in earned:
                     total = points.setdefault(report.nodeid.split("::")[0], [0.0, 0.0])
                     total[0] += earned["dh_points"]
                     total[1] += earned["dh_out_of"]
         for notebook, (earned_points, out_of) in points.items():
             terminalreporter.write_line(f"{notebook}: {earned_points:g} of {out_of:g} points")
+        if unsafe:
+            terminalreporter.write_line(UNSAFE)

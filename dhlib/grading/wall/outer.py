@@ -1,6 +1,7 @@
 """The outer wall: what stands between the box of a worker and the machine.
 
-bubblewrap where it runs; else a container of podman or docker; else a refusal that says what to install.
+bubblewrap where it runs, on this machine or in a container of podman or docker (see the Containerfile); else a refusal
+that says what to install.
 """
 
 from __future__ import annotations
@@ -19,8 +20,6 @@ from dhlib.grading.wall.inner import HOME, NOBODY
 from dhlib.grading.wall.limits import MIB
 from dhlib.grading.wall.view import DEVICES, View, view
 
-#: Names the image that containers start from, where one of ours was built.
-IMAGE = os.environ.get("DHLIB_IMAGE", "dhlib-grade")
 SERVER = "dhlib.grading.wall.server"
 PROBE_SECONDS = 30.0
 #: Files of the server itself, such as the cache of matplotlib.
@@ -28,10 +27,9 @@ SERVER_DISK = 64 * MIB
 
 WITHOUT = "--unsafe-no-sandbox grades without it, which is for your own notebooks only."
 REMEDY = (
-    "Strangers' notebooks need a sandbox, and this machine has none that works. {why} "
-    "Install bubblewrap (Debian and Ubuntu: apt install bubblewrap; Fedora: dnf install bubblewrap), or podman or "
-    f"docker with the image of the Containerfile. {WITHOUT} "
-    "`dhlib grade --doctor` says what is missing."
+    "strangers' notebooks need a sandbox, and none can be built here. {why} "
+    "What helps: bubblewrap (Debian and Ubuntu: apt install bubblewrap; Fedora: dnf install bubblewrap), or podman or "
+    f"docker with the Containerfile of the repository. {WITHOUT}"
 )
 
 
@@ -44,15 +42,12 @@ class Outer:
     name : str
     command : callable
         A view to the command that starts the server behind this wall; its standard input is the socket.
-    spaces : bool
-        Whether namespaces can be made within it. Where not, it is built anew for every submission.
     user : int
         Which user the server becomes; 0 to stay.
     """
 
     name: str
     command: Callable[[View], list[str]]
-    spaces: bool = True
     user: int = 0
 
 
@@ -102,16 +97,6 @@ def bubblewrap(seen: View, root: bool) -> list[str]:
     return [*words, "--proc", "/proc", "--remount-ro", "/", "--chdir", HOME, "--"]
 
 
-def container(program: str, words: list[str]) -> list[str]:
-    """The command line of podman or docker, up to the program that it starts."""
-    return [
-        program, "run", "--rm", "--interactive", "--network=none", "--read-only", "--ipc=private",
-        f"--tmpfs={HOME}:rw,noexec,nosuid,size={SERVER_DISK}", "--cap-drop=ALL", "--security-opt=no-new-privileges",
-        "--pids-limit=256", "--memory=2g", f"--user={NOBODY}:{NOBODY}", f"--workdir={HOME}",
-        *(f"--env={name}={value}" for name, value in environment().items()), *words,
-    ]  # fmt: skip
-
-
 @functools.cache
 def find_outer() -> Outer:
     """The best outer wall that stands on this machine; tried once.
@@ -121,20 +106,18 @@ def find_outer() -> Outer:
     DHError
         If there is none; the message says what to install.
     """
-    why = []
-    if sys.platform == "linux":
-        root = os.geteuid() == 0
-        if reason := _why_not_bubblewrap(root):
-            why.append(reason)
-        else:
+    if sys.platform != "linux":
+        raise DHError(REMEDY.format(why="bubblewrap is for Linux: here, run dhlib in a container."))
+    # In a container root may lack the right to build walls by itself; then it builds them as anybody does.
+    for root in (True, False) if os.geteuid() == 0 else (False,):
+        why = _why_not_bubblewrap(root)
+        if not why:
             return Outer(
                 "bubblewrap",
-                lambda seen: [*bubblewrap(seen, root), *start_python(seen)],
-                user=NOBODY if root else 0,
+                lambda seen, root=root: [*bubblewrap(seen, root), *start_python(seen)],  # type: ignore[misc]
+                NOBODY if root else 0,
             )
-    else:
-        why.append("bubblewrap is for Linux: on this system run dhlib in a container, as README says.")
-    raise DHError(REMEDY.format(why=" ".join(why)))
+    raise DHError(REMEDY.format(why=why))
 
 
 def _why_not_bubblewrap(root: bool) -> str:

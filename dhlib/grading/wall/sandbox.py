@@ -142,8 +142,6 @@ class Sandbox:
                     return outcome
             else:
                 break
-        if not self._outer.spaces:
-            self.close()
         return outcome
 
     def close(self) -> None:
@@ -179,7 +177,7 @@ class Box:
             env={"PATH": os.environ.get("PATH", os.defpath)},
         )
         theirs.close()
-        config = {"filter": base64.b64encode(filter_).decode(), "user": outer.user, "spaces": outer.spaces}
+        config = {"filter": base64.b64encode(filter_).decode(), "user": outer.user}
         try:
             self.control.send(json.dumps(config).encode())
             self.control.settimeout(START_SECONDS)

@@ -125,16 +125,14 @@ class Server:
             nowhere = os.open(os.devnull, os.O_RDWR)
             for stream in (0, 1, 2):
                 os.dup2(nowhere, stream)
-            if self.config["spaces"]:
-                inner.own_spaces()
+            inner.own_spaces()
             first = os.fork()
             if first:
                 os.write(tell, str(first).encode())
                 os._exit(0)
             os.close(tell)
             os.setpgid(0, 0)
-            if self.config["spaces"]:
-                inner.own_files(int(limits["disk_bytes"]))
+            inner.own_files(int(limits["disk_bytes"]))
             with os.fdopen(job_file, "rb") as file:
                 job = json.loads(file.read(LARGEST_JOB))
             ends = channel()
