@@ -34,7 +34,7 @@ endif
 export UV_PYTHON_DOWNLOADS := never
 export UV_NO_CONFIG := 1
 
-.PHONY: help book serve pdf zip test lint exercises solutions lock bench bench-lock test-library links release venv clean distclean
+.PHONY: help book serve pdf zip test lint exercises diagnosis solutions lock bench bench-lock test-library links release venv clean distclean
 .DELETE_ON_ERROR:
 
 help:
@@ -44,6 +44,7 @@ help:
 	@echo 'make test       lint, types and all tests (FULL=1: the long parts whole)'
 	@echo 'make serve      build the book, serve it on this machine and open it'
 	@echo 'make lint       lint and types only'
+	@echo 'make diagnosis  how well wrong answers are named, for the instructors’ page'
 	@echo 'make exercises  derive the student notebooks from the solutions'
 	@echo 'make solutions  run the worked notebooks again, and keep their outputs'
 	@echo 'make bench      measure beside the peers, into bench/RESULTS.md (needs the network; long)'
@@ -92,8 +93,12 @@ test: lint $(NODE_READY)
 exercises: $(VENV_READY)
 	@$(RUN) -m dhlib.grading.derive
 
+diagnosis: $(VENV_READY)
+	@$(RUN) -m dhlib.grading.diagnosis
+
 solutions: exercises
 	@$(RUN) -m dhlib.grading.course.worked solutions/*.ipynb
+
 # The library alone, with the oldest or the newest of what it depends on, in an environment of its own.
 DEPENDENCIES ?= newest
 LIBRARY := .bench/library-$(DEPENDENCIES)

@@ -135,9 +135,9 @@ def kind_of_pair(k, right, letters):
 # Arm K
 
 
-def arm_of(axes, end, unit, name, convention):
+def arm_of(axes, end, unit, name):
     """The arm with these axes, and with its last origin there; `end` is a pose whose z is the last axis."""
-    return place_frames(axes, convention, end=end, unit=unit, name=name).chain
+    return place_frames(axes, "classic", end=end, unit=unit, name=name).chain
 
 
 def upright(origin, z):
@@ -151,7 +151,8 @@ def upright(origin, z):
 
 K_LINES = [Axis(point, direction) for point, direction in K_AXES]
 K_HAND = upright(K_END, K_AXES[-1][1])
-K, K_MODIFIED = (arm_of(K_LINES, K_HAND, "mm", "K", convention) for convention in ("classic", "modified"))
+K = arm_of(K_LINES, K_HAND, "mm", "K")
+K_MODIFIED = K.to_modified()
 
 
 def moved_by_axes(arm, q, reverse=False, senses=(1,) * 5):
@@ -212,7 +213,8 @@ U_LINES = [
     Axis(row[:3], row[3:], "P" if kind == "prismatic" else "R")
     for row, (kind, *_) in zip(RIGHT_LINES, URDF, strict=False)
 ]
-U, U_MODIFIED = (arm_of(U_LINES, U_END, "m", "U", convention) for convention in ("classic", "modified"))
+U = arm_of(U_LINES, U_END, "m", "U")
+U_MODIFIED = U.to_modified()
 
 EXERCISE = Exercise(
     name="axes_to_table",

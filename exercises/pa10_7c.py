@@ -1,179 +1,295 @@
 """What the exercise on the PA10-7C asks, and how it is marked."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from dhlib import robots
-from dhlib.grading.asking import EXACT, METRES, constant, link_function, pose
+from dhlib import Chain, robots
+from dhlib.grading.asking import EXACT, METRES, constant, link_function, measured_at, pose
+from dhlib.grading.course.sources import matrix, number, row
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 
+#: Rows of the table that hold a length.
 ARM = robots.pa10_7c("classic", lengths="A")
-b, l1, l2, f = (ARM.joints[k].d for k in (0, 2, 4, 6))
+SETS = ("A", "B", "B2")
+#: Angles at which somebody may have calibrated an arm, and angles at which it holds the hand of the elbow circle.
+CALIBRATED = ([15, 25, 30], [25, 30, 40, 45], [-45, -35, -30], [50, 55, 65, 70], [5, 15, 20], [-55, -50, -40, -35], [0])
+HIDDEN = (
+    [16, 22, 34, 41],
+    [31, 36, 44, 47],
+    [23, 28, 34, 37],
+    [64, 68, 72, 83],
+    [-27, -24, -16],
+    [43, 46, 54, 57],
+    [14, 17],
+)
+
+
+@dataclass(frozen=True)
+class Given:
+    """The numbers of the task: lengths in m, angles in degrees."""
+
+    b: float = 0.317
+    l1: float = 0.450
+    l2: float = 0.480
+    f: float = 0.070
+    angles: tuple[float, ...] = (30, 40, -50, 70, 20, 60, -80)
+    #: The pose whose elbows are asked for comes from these joints; the page does not say so.
+    hidden: tuple[float, ...] = (25, 40, 30, 75, -20, 50, 10)
+    #: Where the arm of the question about lengths stood, and the set that it has, which the page does not say.
+    calibrated: tuple[float, ...] = (20, 35, -40, 60, 10, -45, 0)
+    its_set: str = "B2"
+
+    @property
+    def arm(self):
+        joints = list(ARM.joints)
+        for i, change in ((1, {"d": self.b}), (3, {"d": self.l1}), (5, {"d": self.l2}), (7, {"d": self.f})):
+            joints[i - 1] = joints[i - 1].replace(**change)
+        return Chain(joints, "classic", name=ARM.name)
+
+    @property
+    def hand(self):
+        """The pose whose elbows are asked for."""
+        return measured_at(self.arm, np.deg2rad(self.hidden))
+
+    @property
+    def shoulder(self):
+        """Where the shoulder is."""
+        return np.array([0, 0, self.b])
+
+    def found(self, lengths=""):
+        """Where the flange is with one of the sets of lengths, by default that of the question."""
+        arm = robots.pa10_7c("classic", lengths=lengths or self.its_set)
+        return arm.fk(np.deg2rad(self.calibrated))[:3, 3]
+
+
+DEFAULT = Given()
+
+
+def draw(lots):
+    """Another arm of this kind: no length and no angle is that of the book."""
+    sizes = lots.some("angles", range(21, 82, 5), 7)  # all different, so that no sum of two is zero
+    signs = lots.one("signs", [(1, 1, -1, 1, 1, 1, -1), (-1, 1, 1, 1, -1, 1, 1), (1, -1, 1, 1, 1, -1, 1)])
+    return Given(
+        b=lots.one("b", [0.281, 0.29, 0.299, 0.308, 0.326, 0.335, 0.344]),
+        l1=lots.one("l1", [0.415, 0.422, 0.429, 0.436, 0.464, 0.471]),
+        l2=lots.one("l2", [0.446, 0.454, 0.462, 0.488, 0.496, 0.504]),
+        f=lots.one("f", [0.056, 0.061, 0.066, 0.076, 0.081, 0.086]),
+        angles=tuple(sign * size for sign, size in zip(signs, sizes, strict=True)),
+        hidden=tuple(lots.one(f"hidden {i}", options) for i, options in enumerate(HIDDEN, 1)),
+        calibrated=tuple(lots.one(f"calibrated {i}", options) for i, options in enumerate(CALIBRATED, 1)),
+        its_set=lots.one("set", SETS),
+    )
+
+
+def off_by(given, lengths):
+    """What to say to whoever took one of the sets of lengths."""
+    away = 1000 * np.linalg.norm(given.found(lengths) - given.found())
+    if lengths == given.its_set:
+        return f"the position by set {lengths} agrees with the measured one to the last digit."
+    return f"with set {lengths} the flange is {away:.0f} mm from where it was measured."
+
+
+def cells(given):
+    """The given cells of the notebook."""
+    return {
+        "arm": f"""\
+# Lengths of the arm, in metres
+b = {number(given.b)}
+l1 = {number(given.l1)}
+l2 = {number(given.l2)}
+f = {number(given.f)}""",
+        "angles": f"q = np.deg2rad({row(given.angles)})",
+        "measured": matrix("T_given", given.hand, decimals=(4, 4, 4, 5)),
+        "calibration": f"""\
+q_calibrated = np.deg2rad({row(given.calibrated)})
+p_calibrated = np.array({row(given.found(), decimals=4)})  # metres""",
+    }
+
 
 SYMBOLS = [f"theta{i}" for i in range(1, 8)]
-JOINTS = np.deg2rad([30, 40, -50, 70, 20, 60, -80])
 QUARTERS = np.deg2rad([90, 90, 90, -90, 0, 90, 180])
-#: The pose whose elbows are asked for, as the page gives it, comes from these joints; the page does not say so.
-HIDDEN = np.deg2rad([25, 40, 30, 75, -20, 50, 10])
-GIVEN = np.round(ARM.fk(HIDDEN), 6)
-
-S = np.array([0, 0, b])
 
 
-def wrist(flange=f, column=2):
+def wrist(given, flange=1.0, column=2):
     """The wrist centre of the given pose: behind the flange, along a column of it."""
-    return GIVEN[:3, 3] - flange * GIVEN[:3, column]
+    return given.hand[:3, 3] - flange * given.f * given.hand[:3, column]
 
 
-def circle(centre=None, shoulder=S, upper=l1, fore=l2):
+def circle(given, centre=None, shoulder=None, upper=0.0, fore=0.0):
     """Distance of the circle's plane from the shoulder, and the circle's radius."""
-    distance = np.linalg.norm((wrist() if centre is None else centre) - shoulder)
+    shoulder = given.shoulder if shoulder is None else shoulder
+    upper, fore = upper or given.l1, fore or given.l2
+    distance = np.linalg.norm((wrist(given) if centre is None else centre) - shoulder)
     along = (distance**2 + upper**2 - fore**2) / (2 * distance)
     return along, np.sqrt(max(upper**2 - along**2, 0))
 
 
-def highest(sign=1):
+def highest(given, sign=1):
     """The highest elbow, or the lowest."""
-    w = (wrist() - S) / np.linalg.norm(wrist() - S)
+    S = given.shoulder
+    w = (wrist(given) - S) / np.linalg.norm(wrist(given) - S)
     up = np.array([0, 0, 1]) - w[2] * w
-    along, radius = circle()
+    along, radius = circle(given)
     return S + along * w + sign * radius * up / np.linalg.norm(up)
 
 
-EXERCISE = Exercise(
-    name="pa10_7c",
-    title="The PA10-7C",
-    arm=ARM,
-    parts=[
-        Part(
-            "frames",
-            "Place the frames",
-            3,
-            Frames("classic", count=8, length_tolerance=1e-3),
-            section="sec-pa10-frames",
-        ),
-        Part("table", "The classic table", 4, Table("classic"), section="sec-pa10-frames"),
-        Part("modified_table", "The modified table", 3, Table("modified"), section="sec-both-columns"),
-        Part(
-            "link",
-            "Any link, as a function",
-            2,
-            link_function(7, seed=8, rounds=1),
-            section="sec-pa10-product",
-            kinematics=False,
-        ),
-        Part(
-            "T7",
-            "T7 in numbers",
-            2,
-            Numbers(pose(0, 7), at=JOINTS, **METRES),
-            section="sec-pa10-product",
-            kinematics=False,
-        ),
-        Part(
-            "T7_quarter",
-            "T7 at quarter turns",
-            1,
-            Numbers(pose(0, 7), at=QUARTERS, **METRES),
-            section="sec-pa10-product",
-            kinematics=False,
-        ),
-        Part(
-            "T04",
-            "Shoulder and elbow, in symbols",
-            2,
-            Formula(pose(0, 4), symbols=SYMBOLS, **EXACT),
-            section="sec-pa10-product",
-            kinematics=False,
-        ),
-        Part(
-            "upper_arm",
-            "Which angles turn the upper arm",
-            1,
-            Choice(
-                {
-                    "theta1, theta2": "S3 runs along the upper arm and only rolls it.",
-                    "theta1, theta2, theta3": "S3 runs along the upper arm: it rolls it, and its direction stays.",
-                    "theta2, theta3": "S1 turns the whole arm, and the upper arm with it.",
-                },
-                right="theta1, theta2",
+def exercise(given):
+    """The exercise with these numbers."""
+    arm, at = given.arm, np.deg2rad(given.angles)
+    return Exercise(
+        name="pa10_7c",
+        title="The PA10-7C",
+        arm=arm,
+        parts=[
+            Part(
+                "frames",
+                "Place the frames",
+                3,
+                Frames("classic", count=8, length_tolerance=1e-3),
+                section="sec-pa10-frames",
             ),
-            section="sec-pa10-product",
-        ),
-        Part(
-            "W",
-            "The wrist of a given hand",
-            1,
-            Numbers(constant(wrist()), shape=(3,), at=HIDDEN, tolerance=1e-3),
-            section="sec-pa10-redundancy",
-            traps=[
-                Trap("The wrist lies behind the flange, against the approach vector a.", constant(wrist(-f))),
-                Trap("The way back is along a, the third column, and not along n.", constant(wrist(column=0))),
-                Trap("The way back is along a, the third column, and not along o.", constant(wrist(column=1))),
-                Trap("This is the position of the flange; the wrist lies f behind it.", constant(wrist(0.0))),
-            ],
-        ),
-        Part(
-            "radius",
-            "The elbow circle",
-            2,
-            Numbers(constant(circle()[1]), shape=(), at=HIDDEN, tolerance=1e-3),
-            section="sec-pa10-redundancy",
-            traps=[
-                Trap("This is how far the plane of the circle is from the shoulder.", constant(circle()[0])),
-                Trap("This is the diameter; the radius is asked for.", constant(2 * circle()[1])),
-                Trap(
-                    "This is how far the plane of the circle is from the wrist.",
-                    constant(circle(upper=l2, fore=l1)[0]),
-                ),
-                Trap(
-                    "The triangle stands on the shoulder, which is b above the foot.",
-                    constant(circle(shoulder=0 * S)[1]),
-                ),
-                Trap(
-                    "The triangle ends at the wrist, and not at the flange.", constant(circle(centre=GIVEN[:3, 3])[1])
-                ),
-            ],
-        ),
-        Part(
-            "E",
-            "The highest elbow",
-            2,
-            Numbers(constant(highest()), shape=(3,), at=HIDDEN, tolerance=1e-3),
-            section="sec-pa10-redundancy",
-            traps=[
-                Trap("This is the lowest elbow on the circle.", constant(highest(-1))),
-                Trap("This is the centre of the circle; the elbow is one radius away from it.", constant(highest(0))),
-                Trap("The circle is found from the shoulder: its height b is missing.", constant(highest() - S)),
-            ],
-        ),
-        Part(
-            "redundant",
-            "What is left over",
-            1,
-            Choice(
-                {
-                    "S3 alone can turn": "turning S3 alone moves the forearm, and the hand with it.",
-                    "all joints turn together": "one keeps its angle: it sets the distance from shoulder to wrist.",
-                    "all but E1 turn together": "E1 sets the distance from shoulder to wrist, and that stays.",
-                },
-                right="all but E1 turn together",
+            Part("table", "The classic table", 4, Table("classic"), section="sec-pa10-frames"),
+            Part("modified_table", "The modified table", 3, Table("modified"), section="sec-both-columns"),
+            Part(
+                "link",
+                "Any link, as a function",
+                2,
+                link_function(7, seed=8, rounds=1),
+                section="sec-pa10-product",
+                kinematics=False,
             ),
-            section="sec-pa10-redundancy",
-        ),
-        Part(
-            "lengths",
-            "Which set of lengths",
-            2,
-            Choice(
-                {
-                    "A": "with set A the flange is 32 mm from where it was measured.",
-                    "B": "set B comes near, but its flange is 5 mm too short.",
-                    "B2": "the position by set B2 agrees with the measured one to the last digit.",
-                },
-                right="B2",
+            Part(
+                "T7",
+                "T7 in numbers",
+                2,
+                Numbers(pose(0, 7), at=at, **METRES),
+                section="sec-pa10-product",
+                kinematics=False,
             ),
-            section="sec-pa10-lengths",
-        ),
-    ],
-)
+            Part(
+                "T7_quarter",
+                "T7 at quarter turns",
+                1,
+                Numbers(pose(0, 7), at=QUARTERS, **METRES),
+                section="sec-pa10-product",
+                kinematics=False,
+            ),
+            Part(
+                "T04",
+                "Shoulder and elbow, in symbols",
+                2,
+                Formula(pose(0, 4), symbols=SYMBOLS, **EXACT),
+                section="sec-pa10-product",
+                kinematics=False,
+            ),
+            Part(
+                "upper_arm",
+                "Which angles turn the upper arm",
+                1,
+                Choice(
+                    {
+                        "theta1, theta2": "S3 runs along the upper arm and only rolls it.",
+                        "theta1, theta2, theta3": "S3 runs along the upper arm: it rolls it, and its direction stays.",
+                        "theta2, theta3": "S1 turns the whole arm, and the upper arm with it.",
+                    },
+                    right="theta1, theta2",
+                ),
+                section="sec-pa10-product",
+            ),
+            Part(
+                "W",
+                "The wrist of a given hand",
+                1,
+                Numbers(constant(wrist(given)), shape=(3,), at=at, tolerance=1e-3),
+                section="sec-pa10-redundancy",
+                traps=[
+                    Trap(
+                        "The wrist lies behind the flange, against the approach vector a.", constant(wrist(given, -1.0))
+                    ),
+                    Trap(
+                        "The way back is along a, the third column, and not along n.", constant(wrist(given, column=0))
+                    ),
+                    Trap(
+                        "The way back is along a, the third column, and not along o.", constant(wrist(given, column=1))
+                    ),
+                    Trap(
+                        "This is the position of the flange; the wrist lies f behind it.", constant(wrist(given, 0.0))
+                    ),
+                ],
+            ),
+            Part(
+                "radius",
+                "The elbow circle",
+                2,
+                Numbers(constant(circle(given)[1]), shape=(), at=at, tolerance=1e-3),
+                section="sec-pa10-redundancy",
+                traps=[
+                    Trap("This is how far the plane of the circle is from the shoulder.", constant(circle(given)[0])),
+                    Trap("This is the diameter; the radius is asked for.", constant(2 * circle(given)[1])),
+                    Trap(
+                        "This is how far the plane of the circle is from the wrist.",
+                        constant(circle(given, upper=given.l2, fore=given.l1)[0]),
+                    ),
+                    Trap(
+                        "The triangle stands on the shoulder, which is b above the foot.",
+                        constant(circle(given, shoulder=np.zeros(3))[1]),
+                    ),
+                    Trap(
+                        "The triangle ends at the wrist, and not at the flange.",
+                        constant(circle(given, centre=given.hand[:3, 3])[1]),
+                    ),
+                ],
+            ),
+            Part(
+                "E",
+                "The highest elbow",
+                2,
+                Numbers(constant(highest(given)), shape=(3,), at=at, tolerance=1e-3),
+                section="sec-pa10-redundancy",
+                traps=[
+                    Trap("This is the lowest elbow on the circle.", constant(highest(given, -1))),
+                    Trap(
+                        "This is the centre of the circle; the elbow is one radius away from it.",
+                        constant(highest(given, 0)),
+                    ),
+                    Trap(
+                        "The circle is found from the shoulder: its height b is missing.",
+                        constant(highest(given) - given.shoulder),
+                    ),
+                ],
+            ),
+            Part(
+                "redundant",
+                "What is left over",
+                1,
+                Choice(
+                    {
+                        "S3 alone can turn": "turning S3 alone moves the forearm, and the hand with it.",
+                        "all joints turn together": "one keeps its angle: it sets the distance from shoulder to wrist.",
+                        "all but E1 turn together": "E1 sets the distance from shoulder to wrist, and that stays.",
+                    },
+                    right="all but E1 turn together",
+                ),
+                section="sec-pa10-redundancy",
+            ),
+            Part(
+                "lengths",
+                "Which set of lengths",
+                2,
+                Choice(
+                    {
+                        "A": off_by(given, "A"),
+                        "B": off_by(given, "B"),
+                        "B2": off_by(given, "B2"),
+                    },
+                    right=given.its_set,
+                ),
+                section="sec-pa10-lengths",
+            ),
+        ],
+    )
+
+
+EXERCISE = exercise(DEFAULT)

@@ -1,24 +1,110 @@
 """What the exercise on a SCARA asks, and how it is marked."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, robots
-from dhlib.grading.asking import EXACT, METRES, joint_values, link_function, pose, with_gripper
+from dhlib.grading.asking import EXACT, METRES, joint_values, link_function, measured_at, pose, with_gripper
+from dhlib.grading.course.sources import matrix, number, row
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 
-CLASSIC = robots.cobra600("classic")
-MODIFIED = robots.cobra600("modified")
-#: Z and E as the page gives them.
-Z = Tx(0.8) @ Ty(0.3) @ Tz(0.5) @ Rz(np.pi / 2)
-E = Tx(0.04) @ Tz(0.12) @ Rx(np.pi / 6)
-ARM = Chain(CLASSIC.joints, "classic", base=Z, tool=E, name=CLASSIC.name)
+COBRA = robots.cobra600("classic")
+KINDS = COBRA.kinds
+
+
+@dataclass(frozen=True)
+class Given:
+    """The numbers of the task: lengths in m, angles in degrees."""
+
+    d1: float = COBRA.joints[0].d
+    a1: float = COBRA.joints[0].a
+    a2: float = COBRA.joints[1].a
+    #: Joint values, of which the third is a slide.
+    values: tuple[float, ...] = (30, -70, 0.15, 40)
+    corner: tuple[float, ...] = (0.8, 0.3, 0.5)
+    gripper: tuple[float, ...] = (0.04, 0.12, 30)
+    #: The pose of the last part comes from these joints; the page does not say so.
+    hidden: tuple[float, ...] = (-25, 65, 0.08, 50)
+
+    @property
+    def arm(self):
+        first, second, *quill = COBRA.joints
+        return Chain(
+            [first.replace(d=self.d1, a=self.a1), second.replace(a=self.a2), *quill], "classic", name=COBRA.name
+        )
+
+    @property
+    def in_the_workshop(self):
+        """The arm with Z and E as the page gives them."""
+        x, y, z = self.corner
+        ahead, below, tilt = self.gripper
+        Z = Tx(x) @ Ty(y) @ Tz(z) @ Rz(np.pi / 2)
+        E = Tx(ahead) @ Tz(below) @ Rx(np.deg2rad(tilt))
+        return Chain(self.arm.joints, "classic", base=Z, tool=E, name=COBRA.name)
+
+
+DEFAULT = Given()
+
+
+def draw(lots):
+    """Another arm of this kind in another workshop: no length and no angle is that of the book."""
+    sizes = lots.some("angles", range(21, 77, 5), 3)  # all different, so that no sum of two is zero
+    signs = lots.one("signs", [(1, -1, 1), (-1, 1, 1), (1, -1, -1), (-1, 1, -1)])
+    first, second, last = (sign * size for sign, size in zip(signs, sizes, strict=True))
+    # No sum of two of the hidden angles is a multiple of 5: no quarter turn hides in it.
+    h1, h2, h4 = (
+        lots.one(f"hidden {i}", [*range(-end - 100, -end, 10), *range(10 + end, 110 + end, 10)])
+        for i, end in ((1, 6), (2, 1), (4, 7))
+    )
+    return Given(
+        d1=lots.one("d1", [0.342, 0.351, 0.36, 0.369, 0.405, 0.414, 0.423]),
+        a1=lots.one("a1", [0.286, 0.294, 0.302, 0.31, 0.342, 0.35, 0.358]),
+        a2=lots.one("a2", [0.224, 0.232, 0.24, 0.248, 0.256, 0.264]),
+        values=(first, second, lots.one("slide", [0.11, 0.12, 0.13, 0.16, 0.17, 0.18]), last),
+        corner=(
+            lots.one("x", [0.62, 0.66, 0.7, 0.74, 0.86, 0.9]),
+            lots.one("y", [0.18, 0.22, 0.26, 0.34, 0.38]),
+            lots.one("z", [0.42, 0.44, 0.46, 0.54, 0.56]),
+        ),
+        gripper=(
+            lots.one("ahead", [0.03, 0.05, 0.06, 0.07]),
+            lots.one("below", [0.09, 0.1, 0.11, 0.13, 0.14]),
+            lots.one("tilt", [20, 25, 35, 40, 50, 55]),
+        ),
+        hidden=(h1, h2, lots.one("hidden slide", [0.05, 0.06, 0.07, 0.09, 0.1]), h4),
+    )
+
+
+def cells(given):
+    """The given cells of the notebook."""
+    measured = measured_at(given.in_the_workshop, joint_values(KINDS, given.hidden))
+    ahead, below, tilt = given.gripper
+    theta1, theta2, slide, theta4 = given.values
+    return {
+        "arm": f"""\
+# Lengths of the arm, in metres
+d1 = {number(given.d1)}
+a1 = {number(given.a1)}
+a2 = {number(given.a2)}""",
+        "joints": f"""\
+# The joint vector: angles in radians, the slide in metres
+theta_1, theta_2, theta_4 = np.deg2rad({row((theta1, theta2, theta4))})
+d_3 = {number(slide)}
+q = [theta_1, theta_2, d_3, theta_4]""",
+        "ends": f"""\
+# Lengths in metres, the tilt in radians
+corner = {row(given.corner)}
+ahead = {number(ahead)}
+below = {number(below)}
+tilt = np.deg2rad({number(tilt)})""",
+        "measured": matrix("X_measured", measured, decimals=(4, 4, 4, 5)),
+    }
+
 
 SYMBOLS = ["theta1", "theta2", "d3", "theta4"]
-JOINTS = joint_values(CLASSIC.kinds, [30, -70, 0.15, 40])
-QUARTERS = joint_values(CLASSIC.kinds, [90, -90, 0.2, 90])
-#: The pose of the last part, as the page gives it, comes from these joints; the page does not say so.
-HIDDEN = joint_values(CLASSIC.kinds, [-25, 65, 0.08, 50])
+QUARTERS = joint_values(KINDS, [90, -90, 0.2, 90])
 
 
 def all_converted(arm, q):
@@ -30,134 +116,140 @@ def heading(sign2=1, sign4=-1):
     return lambda arm, q: q[0] + sign2 * q[1] + sign4 * q[3]
 
 
-EXERCISE = Exercise(
-    name="scara",
-    title="A SCARA",
-    arm=ARM,
-    parts=[
-        Part(
-            "frames",
-            "Place the frames",
-            3,
-            Frames("classic", count=5, length_tolerance=1e-3),
-            section="sec-prismatic-scara",
-            arm=CLASSIC,
-        ),
-        Part("table", "The classic table", 4, Table("classic"), section="sec-prismatic-scara", arm=CLASSIC),
-        Part("modified_table", "The modified table", 3, Table("modified"), section="sec-both-columns", arm=CLASSIC),
-        Part(
-            "A2",
-            "The turn-over, classic",
-            1,
-            Formula(pose(1, 2), symbols=SYMBOLS, **EXACT),
-            section="sec-prismatic-scara",
-            arm=CLASSIC,
-            kinematics=False,
-        ),
-        Part(
-            "A3_modified",
-            "The slide, modified",
-            1,
-            Formula(pose(2, 3), symbols=SYMBOLS, **EXACT),
-            section="sec-prismatic-row",
-            arm=MODIFIED,
-            kinematics=False,
-        ),
-        Part(
-            "link",
-            "Any modified link, as a function",
-            2,
-            link_function(4, seed=2),
-            section="sec-prismatic-row",
-            arm=MODIFIED,
-            kinematics=False,
-        ),
-        Part(
-            "T04",
-            "The whole arm, in symbols",
-            3,
-            Formula(pose(0, 4), symbols=SYMBOLS, **EXACT),
-            section="sec-prismatic-scara",
-            arm=CLASSIC,
-            kinematics=False,
-        ),
-        Part(
-            "heading",
-            "How far the hand has turned",
-            1,
-            Formula(heading(), shape=(), symbols=SYMBOLS),
-            section="sec-prismatic-scara",
-            arm=CLASSIC,
-            traps=[
-                Trap(
-                    "Axis 4 points down: seen from above, its joint turns the other way.",
-                    heading(sign4=1),
-                    "sense",
-                ),
-                Trap(
-                    "Axes 1 and 2 point the same way, so their angles add.",
-                    heading(sign2=-1),
-                    "sense",
-                ),
-                Trap("The slide does not turn the hand.", lambda arm, q: q[0] + q[1] + q[2] - q[3], "joint_kind"),
-                Trap("Axis 4 turns the hand too.", heading(sign4=0)),
-            ],
-            kinematics=False,
-        ),
-        Part(
-            "T4",
-            "T4 in numbers",
-            2,
-            Numbers(pose(0, 4), at=JOINTS, **METRES),
-            section="sec-prismatic-scara",
-            arm=CLASSIC,
-            traps=[
-                Trap(
-                    "The third joint was converted to radians too. It slides: 0.15 m stays 0.15 m.",
-                    all_converted,
-                    "degrees",
-                )
-            ],
-            kinematics=False,
-        ),
-        Part(
-            "T4_quarter",
-            "T4 at quarter turns",
-            1,
-            Numbers(pose(0, 4), at=QUARTERS, **METRES),
-            section="sec-prismatic-scara",
-            arm=CLASSIC,
-            kinematics=False,
-        ),
-        Part(
-            "heights",
-            "Heights that wander",
-            1,
-            Choice(
-                {
-                    "d_2": "both axes point up: 0.3 and 0.087 add up to the height.",
-                    "d_3": "axis 3 points down, so 0.087 there is taken off the height: it would have to be -0.087.",
-                    "d_4": "axis 4 points down, so 0.087 there is taken off the height: it would have to be -0.087.",
-                },
-                right="d_2",
+def exercise(given):
+    """The exercise with these numbers."""
+    bare, arm, at = given.arm, given.in_the_workshop, joint_values(KINDS, given.values)
+    return Exercise(
+        name="scara",
+        title="A SCARA",
+        arm=arm,
+        parts=[
+            Part(
+                "frames",
+                "Place the frames",
+                3,
+                Frames("classic", count=5, length_tolerance=1e-3),
+                section="sec-prismatic-scara",
+                arm=bare,
             ),
-            section="sec-prismatic-wander",
-        ),
-        Part(
-            "treated",
-            "What went wrong",
-            1,
-            Choice(
-                {
-                    "angles in degrees": "only q3 was changed, and it is no angle.",
-                    "joint 3 revolute": "the hand turned and stayed at its height; where a joint slides, it is the "
-                    "other way round.",
-                    "alpha_2 = 0": "then the hand would rise where it should sink, but it would not turn.",
-                },
-                right="joint 3 revolute",
+            Part("table", "The classic table", 4, Table("classic"), section="sec-prismatic-scara", arm=bare),
+            Part("modified_table", "The modified table", 3, Table("modified"), section="sec-both-columns", arm=bare),
+            Part(
+                "A2",
+                "The turn-over, classic",
+                1,
+                Formula(pose(1, 2), symbols=SYMBOLS, **EXACT),
+                section="sec-prismatic-scara",
+                arm=bare,
+                kinematics=False,
             ),
-            section="sec-prismatic-trap-revolute",
-        ),
-        *with_gripper(ARM, "T4", ("Base and tool", "Back from X"), JOINTS, HIDDEN, **METRES),
-    ],
-)
+            Part(
+                "A3_modified",
+                "The slide, modified",
+                1,
+                Formula(pose(2, 3), symbols=SYMBOLS, **EXACT),
+                section="sec-prismatic-row",
+                arm=bare.to_modified(),
+                kinematics=False,
+            ),
+            Part(
+                "link",
+                "Any modified link, as a function",
+                2,
+                link_function(4, seed=2),
+                section="sec-prismatic-row",
+                arm=bare.to_modified(),
+                kinematics=False,
+            ),
+            Part(
+                "T04",
+                "The whole arm, in symbols",
+                3,
+                Formula(pose(0, 4), symbols=SYMBOLS, **EXACT),
+                section="sec-prismatic-scara",
+                arm=bare,
+                kinematics=False,
+            ),
+            Part(
+                "heading",
+                "How far the hand has turned",
+                1,
+                Formula(heading(), shape=(), symbols=SYMBOLS),
+                section="sec-prismatic-scara",
+                arm=bare,
+                traps=[
+                    Trap(
+                        "Axis 4 points down: seen from above, its joint turns the other way.",
+                        heading(sign4=1),
+                        "sense",
+                    ),
+                    Trap(
+                        "Axes 1 and 2 point the same way, so their angles add.",
+                        heading(sign2=-1),
+                        "sense",
+                    ),
+                    Trap("The slide does not turn the hand.", lambda arm, q: q[0] + q[1] + q[2] - q[3], "joint_kind"),
+                    Trap("Axis 4 turns the hand too.", heading(sign4=0)),
+                ],
+                kinematics=False,
+            ),
+            Part(
+                "T4",
+                "T4 in numbers",
+                2,
+                Numbers(pose(0, 4), at=at, **METRES),
+                section="sec-prismatic-scara",
+                arm=bare,
+                traps=[
+                    Trap(
+                        "The third joint was converted to radians too. It slides: metres stay metres.",
+                        all_converted,
+                        "degrees",
+                    )
+                ],
+                kinematics=False,
+            ),
+            Part(
+                "T4_quarter",
+                "T4 at quarter turns",
+                1,
+                Numbers(pose(0, 4), at=QUARTERS, **METRES),
+                section="sec-prismatic-scara",
+                arm=bare,
+                kinematics=False,
+            ),
+            Part(
+                "heights",
+                "Heights that wander",
+                1,
+                Choice(
+                    {
+                        "d_2": "both axes point up: the two add up to the height.",
+                        "d_3": "axis 3 points down, so 0.087 there is taken off the height: it should be negative.",
+                        "d_4": "axis 4 points down, so 0.087 there is taken off the height: it should be negative.",
+                    },
+                    right="d_2",
+                ),
+                section="sec-prismatic-wander",
+            ),
+            Part(
+                "treated",
+                "What went wrong",
+                1,
+                Choice(
+                    {
+                        "angles in degrees": "only q3 was changed, and it is no angle.",
+                        "joint 3 revolute": "the hand turned and stayed at its height; where a joint slides, it is the "
+                        "other way round.",
+                        "alpha_2 = 0": "then the hand would rise where it should sink, but it would not turn.",
+                    },
+                    right="joint 3 revolute",
+                ),
+                section="sec-prismatic-trap-revolute",
+            ),
+            *with_gripper(arm, "T4", ("Base and tool", "Back from X"), at, joint_values(KINDS, given.hidden), **METRES),
+        ],
+    )
+
+
+EXERCISE = exercise(DEFAULT)

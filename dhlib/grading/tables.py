@@ -32,7 +32,8 @@ CREDIT = {"ends": 0.75, "zeros": 0.75, "senses": 0.5, "mirror": 0.25}
 #: Angles in rad, and lengths relative to the reach, that count as equal.
 TOLERANCE = 1e-3
 FACTORS = {1000.0: "a thousand times too small", 0.001: "a thousand times too large",
-           10.0: "ten times too small", 0.1: "ten times too large"}  # fmt: skip
+           10.0: "ten times too small", 0.1: "ten times too large",
+           100.0: "a hundred times too small", 0.01: "a hundred times too large"}  # fmt: skip
 
 
 def judge_table(part: Part, asks: Table, table: Rows, reveal: bool = True) -> Mark:
@@ -142,7 +143,13 @@ def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain, reveal:
     if verdict.mirror:
         says = "This is the mirror image of the arm: the sign of an a, an α or a d is turned."
         known = slip.misconception if slip else KNOWN["sign"]
-        return make_mark(part, WRONG, f"{slip.says} {says}" if slip else says, CREDIT["mirror"], known)
+        return make_mark(
+            part,
+            WRONG,
+            f"{slip.says} That makes the mirror image of the arm." if slip else says,
+            CREDIT["mirror"],
+            known,
+        )
     for factor, size in FACTORS.items():
         if same_mechanism(scaled(answer, factor), reference, tol=TOLERANCE):
             known = KNOWN["unit"]

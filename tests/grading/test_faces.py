@@ -1,5 +1,7 @@
 """One checker, four faces: the notebook's check, nbval, pytest and `dhlib grade` say the same of the same answer."""
 
+import contextlib
+import io
 import json
 import re
 import subprocess
@@ -12,10 +14,20 @@ import nbclient
 import nbformat
 import pytest
 
+from dhlib.grading.answers import read_answer
 from dhlib.grading.check import Checker, CheckFailed, tell
+from dhlib.grading.exercise import load_exercise
+from dhlib.grading.forms import Choice, Function, ReasonedChoice, Valued
 from dhlib.grading.grade import grade_notebook
+from dhlib.grading.marking import Marker, agree
+from dhlib.grading.misconceptions import would_have_given
 
 ROOT = Path(__file__).parents[2]
+
+
+def load(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
 
 #: Whole hand-ins. Each part is answered in every one of them, rightly or wrongly, in many ways.
 ARM = """\
@@ -90,6 +102,75 @@ HANDED_IN = [
         "T4_back": "T4_back = np.diag([1.0, 1, -1, 1])",
     },
 ]  # fmt: skip
+
+
+#: Exercises of which one hand-in is made each, right in a third of its parts, wrong in another, unreadable in the last.
+MIXED = ("axes_to_table", "convert", "one_link", "puma560", "same_arm", "scara", "stanford", "transforms")
+
+
+def wrong_answer(part):
+    """The source of an answer that is none, or that a known misconception leads to."""
+    match part.asks:
+        case ReasonedChoice():
+            return f"{part.id} = {part.asks.right!r}, {next(k for k, r in part.asks.reasons.items() if not r.holds)!r}"
+        case Choice():
+            return f"{part.id} = {next(option for option in part.asks.options if option != part.asks.right)!r}"
+        case Function():
+            (*first, _), values = part.asks.shape or (1, 1), part.asks.values(part.chain)
+            told = values[0].tolist() if first or part.asks.shape else float(values[0])
+            return f"def {part.id}(*arguments):\n    return {told!r}"
+        case Valued():
+            right = part.asks.values(part.chain)
+            for _, values in would_have_given(part):
+                if not agree(part.asks.meaning(values), part.asks.meaning(right), part.asks.tolerances):
+                    return f"{part.id} = {values[0].tolist()!r}"
+    return f"{part.id} = [[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]] * {part.chain.n + 1}"
+
+
+NO_ANSWERS = ("...", "None", "'a word'", "float('nan')", "[[1, 2], [3]]", "{1: 2}", "7j", "object()")
+
+
+def mixed_hand_in(name):
+    """The student's notebook of an exercise with all three kinds of answers."""
+    exercise = load_exercise(name, ROOT / "exercises")
+    notebook = load(ROOT / "exercises" / f"{name}.ipynb")
+    worked = {cell["id"]: cell["source"] for cell in load(ROOT / "solutions" / f"{name}.ipynb")["cells"]}
+    places = {part.id: k for k, part in enumerate(exercise.parts)}
+    for cell in notebook["cells"]:
+        about = cell["metadata"]["dh"]
+        if about["role"] != "answer":
+            continue
+        part = exercise.part(about["part"])
+        # What comes later may build on this cell: its own answer runs first.
+        source = "".join(worked[cell["id"]])
+        kind = places[part.id] % 3
+        if kind:
+            other = wrong_answer(part) if kind == 1 else f"{part.id} = {NO_ANSWERS[places[part.id] % len(NO_ANSWERS)]}"
+            source = f"{source}\nkept_{part.id} = {part.id}\n{other}"
+        cell["source"] = source
+    # Cells that build on an answer find the right one, whatever was handed in before them.
+    for cell in notebook["cells"]:
+        if cell["metadata"]["dh"]["role"] == "answer":
+            kept = [p for p, k in places.items() if k % 3 and k < places[cell["metadata"]["dh"]["part"]]]
+            cell["source"] = "".join(f"{p} = kept_{p}\n" for p in kept) + cell["source"]
+    return notebook
+
+
+def by_page(path):
+    """Face 1: the Python that the page runs, on values that went through JSON."""
+    notebook = load(path)
+    exercise = load_exercise(notebook["metadata"]["dh"]["exercise"], ROOT / "exercises")
+    marker, names, said = Marker(exercise), {}, {}
+    for cell in notebook["cells"]:
+        about = cell["metadata"]["dh"]
+        if cell["cell_type"] == "code" and about["role"] != "check":
+            with contextlib.redirect_stdout(io.StringIO()):
+                exec("".join(cell["source"]), names)  # the hand-ins above
+        if about["role"] == "answer":
+            part = exercise.part(about["part"])
+            reading = read_answer(part.asks.request(), names[part.id])
+            said[part.id] = marker.mark(part.id, json.loads(json.dumps(reading, allow_nan=False)))
+    return said
 
 
 @pytest.fixture(scope="module")
@@ -182,6 +263,29 @@ def test_all_faces_say_the_same(notebooks, tmp_path, k):
         passed, words, points = tested[part]
         assert (passed, points) == (mark.passed, mark.points), part
         assert words is None or words.strip() == tell(mark)
+
+
+@pytest.mark.notebooks
+@pytest.mark.parametrize("name", MIXED)
+def test_all_faces_say_the_same_of_every_kind_of_answer(name, tmp_path):
+    path = tmp_path / f"{name}.ipynb"
+    path.write_text(json.dumps(mixed_hand_in(name)), encoding="utf-8")
+    graded = {mark.part: mark for mark in grade_notebook(path).marks}
+    checked, tested, paged = by_check(path), by_pytest(path, tmp_path), by_page(path)
+    for part, mark in graded.items():
+        assert paged[part] == mark, part
+        assert checked[part] == (mark.passed, tell(mark)), part
+        passed, words, points = tested[part]
+        assert (passed, points) == (mark.passed, mark.points), part
+        assert words is None or words.strip() == tell(mark)
+    verdicts = [mark.verdict for mark in graded.values()]
+    assert verdicts[::3] == ["right"] * len(verdicts[::3])
+    assert not {"right", "follows"} & {*verdicts[1::3], *verdicts[2::3]}
+
+
+def test_two_hundred_answers_go_through_all_faces():
+    parts = sum(len(load_exercise(name, ROOT / "exercises").parts) for name in MIXED)
+    assert parts + sum(len(answers) for answers in HANDED_IN) >= 200
 
 
 def test_the_hand_ins_are_what_they_are_meant_to_be(notebooks):

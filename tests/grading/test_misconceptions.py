@@ -1,53 +1,73 @@
 """Every misconception that shows in a part is caught there, and named."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from dhlib import Chain
-from dhlib.grading.answers import read_answer
-from dhlib.grading.forms import Table, Valued
-from dhlib.grading.marking import agree, mark
-from dhlib.grading.misconceptions import KNOWN, would_have_given
+from dhlib import Chain, robots
+from dhlib.grading.diagnosis import Case, Tally, as_row, cases, other_chains, read, wrong_readings
+from dhlib.grading.forms import Choice, Valued
+from dhlib.grading.marks import Mark
+from dhlib.grading.misconceptions import KNOWN
 from dhlib.grading.sections import CHAPTERS
-from dhlib.grading.tables import _told_chains
 
 #: At least this share of wrong answers is named exactly, over all parts. The rest cannot be told apart: a link matrix
 #: without p is transposed by turning the other way, and one entry tells less than a matrix.
 NAMED = 0.95
+ROOT = Path(__file__).parents[2]
+FIGURES = read(ROOT / "book" / "diagnosis.csv")
 
 
-def wrong_answers(part):
-    """Each distinct wrong answer that a known misconception leads to, with the keys of all that lead to it."""
-    asks = part.asks
-    right = asks.values(part.chain)
-    found = []
-    for slip, values in would_have_given(part):
-        if agree(values, right, asks.tolerances) or np.abs(values).max() > 1e9:
-            continue
-        for others, keys in found:
-            if agree(values, others, asks.tolerances):
-                keys.append(slip.misconception.key)
-                break
-        else:
-            found.append((values, [slip.misconception.key]))
-    return found
+def test_every_misconception_is_named_and_every_right_answer_known(every, results):
+    """And the figures in the instructors' page are those of today: after a change run make diagnosis."""
+    tally = Tally(len(every.parts))
+    for case in cases(every, results):
+        assert case.how not in ("accepted", "refused"), (case.answer, case.keys, str(case.mark))
+        setattr(tally, case.how, getattr(tally, case.how) + 1)
+    assert tally.share >= NAMED, str(tally)
+    assert tally.wrong > 2 * len([part for part in every.parts if not isinstance(part.asks, Choice)])
+    assert tally.right > 3 * len(every.parts)
+    assert as_row(tally) == FIGURES[every.name], "run make diagnosis"
 
 
-def test_every_misconception_that_shows_is_caught_and_named(every):
-    named = shown = 0
-    for part in every.parts:
-        if not isinstance(part.asks, Valued):
-            continue
-        for values, keys in wrong_answers(part):
-            got = mark(part, {"values": values.tolist()})
-            assert not got.passed, (part.id, keys)
-            assert got.misconception, (part.id, keys, got.message)
-            assert set(got.misconception.split("+")) & set(keys), (part.id, keys, got.message)
-            shown += 1
-            named += "+" not in got.misconception
-    assert shown > 3 * len([part for part in every.parts if isinstance(part.asks, Valued)])
-    print(f"{every.name}: {named} of {shown} named exactly: {named / shown:.1%}")
-    assert named / shown >= NAMED
+def test_the_figures_add_up():
+    exercises = {name: row for name, row in FIGURES.items() if name != "all"}
+    assert [sum(column) for column in zip(*exercises.values(), strict=True)] == FIGURES["all"]
+    assert sorted(exercises) == sorted(path.stem for path in (ROOT / "solutions").glob("*.ipynb"))
+    assert FIGURES["all"][0] >= 80
+
+
+@pytest.mark.parametrize(
+    ("keys", "verdict", "misconception", "how"),
+    [
+        ({"sign"}, "wrong", "sign", "named"),
+        ({"sign", "row"}, "wrong", "row", "named"),
+        ({"sign"}, "wrong", "row+sign", "common"),
+        ({"sign"}, "wrong", "row", "other"),
+        ({"sign"}, "wrong", "", "other"),
+        ({"sign"}, "right", "", "accepted"),
+        ({"sign"}, "follows", "", "accepted"),
+        (set(), "right", "", "right"),
+        (set(), "nearly", "", "refused"),
+        (set(), "unreadable", "", "refused"),
+    ],
+)
+def test_a_tally_counts_what_it_says(exercise, keys, verdict, misconception, how):
+    """Negative control: an answer that passes though it is wrong would be counted, and so would a right one refused."""
+    mark = Mark("A1", 0, 1, verdict, "", misconception)
+    assert Case(exercise.part("A1"), "", frozenset(keys), mark).how == how
+
+
+def test_other_tables_of_an_arm_are_that_arm():
+    """The dresses that the trial takes for right are so: the same pose, at the same joint values."""
+    random = np.random.default_rng(2)
+    for arm in (robots.quickshot(), robots.stanford(), robots.puma560("modified"), robots.pa10_6c()):
+        others = dict(other_chains(arm))
+        assert len(others) >= 2 * (arm.n - 2)
+        for q in random.uniform(-2, 2, (3, arm.n)):
+            for name, other in others.items():
+                assert np.abs(other.fk(q) - arm.fk(q)).max() < 1e-9 * max(1, arm.reach), name
 
 
 def test_which_misconceptions_show_in_the_exercise(exercise):
@@ -55,7 +75,7 @@ def test_which_misconceptions_show_in_the_exercise(exercise):
     met = set()
     for part in exercise.parts:
         if isinstance(part.asks, Valued):
-            for _, keys in wrong_answers(part):
+            for keys, _ in wrong_readings(part):
                 met.update(keys)
     assert set(KNOWN) - met == {"offset", "parallel", "improper"}
 
@@ -118,23 +138,6 @@ def test_where_two_fit_both_are_said(judge, arm, solved):
     got = judge("A4", arm.A(4, -solved["q"]))
     assert got.misconception == "sense+transpose"
     assert got.message.startswith("More than one slip leads to this very answer. Check")
-
-
-def test_wrong_tables_are_named(every):
-    for part in every.parts:
-        if not isinstance(part.asks, Table):
-            continue
-        named = 0
-        for slip, told in _told_chains(part.chain):
-            reading = read_answer(part.asks.request(), told)
-            got = mark(part, reading)
-            if got.passed:  # one of the false friends: the same arm after all
-                continue
-            # What the ladder says first, of the same arm with something else about it, is as good a name.
-            keys = {slip.misconception.key, "convention", "sign", "ends", "offset", "sense"}
-            assert set(got.misconception.split("+")) & keys, (part.id, slip, got)
-            named += 1
-        assert named > part.chain.n, part.id
 
 
 def test_every_sentence_points_into_the_book(every):

@@ -248,7 +248,7 @@ def test_one_set_of_lengths_fits_the_calibration(name, arm, degrees):
     exercise, _ = with_witness(name)
     page = (ROOT / "exercises" / f"{name}.ipynb").read_text(encoding="utf-8")
     places = {each: arm(lengths=each).fk(np.deg2rad(degrees))[:3, 3] for each in ("A", "B", "B2")}
-    on_page = {each for each, p in places.items() if "({:.4f}, {:.4f}, {:.4f})".format(*p) in page}
+    on_page = {each for each, p in places.items() if "[{:.4f}, {:.4f}, {:.4f}]".format(*p) in page}
     right = exercise.part("lengths").asks.right
     assert on_page == {right}
     assert all(np.linalg.norm(p - places[right]) > 0.004 for each, p in places.items() if each != right)
