@@ -32,7 +32,9 @@ STYLE = """
   .book-title h1 { font-size: 34pt; margin: 0; }
   h1 { font-size: 21pt; } h2 { font-size: 15pt; } h3 { font-size: 12pt; }
   h1, h2, h3, h4 { break-after: avoid; }
-  pre { white-space: pre-wrap; font-size: 8.5pt; }
+  pre { white-space: pre-wrap; font-size: 8.5pt; orphans: 5; widows: 5; }
+  .cell { break-inside: auto; }
+  .cell :is(div, pre) { overflow: visible !important; }
   div.math { overflow: visible; justify-content: center; }
   div.math > .formula { max-width: 100%; }
   div.math > .formula > svg { max-width: 100%; height: auto; }
@@ -41,11 +43,14 @@ STYLE = """
   section { border: 0; box-shadow: none; background: none; }
   table { font-size: 9.5pt; } img, svg.dh-figure { max-width: 100%; }
   .book-contents ol { list-style: none; padding: 0; }
-  .book-contents li { display: flex; gap: 0.5em; margin: 0.35em 0; }
+  .book-contents li { display: flex; gap: 0.5em; margin: 0.15em 0; }
   .book-contents li::before { content: ""; order: 1; flex: 1; border-bottom: 1px dotted #999; margin-bottom: 0.3em; }
   .book-contents .number { order: 2; }
   .headerlink, button.copybtn, .toggle-button, script { display: none !important; }
   details > summary { list-style: none; }
+  details.hide > summary, .citation > .backrefs { display: none; }
+  .citation > .label { float: left; margin-right: 0.6em; }
+  .citation > p { margin: 0 0 0.4em; }
   .dh-answer input { border: 0 !important; border-bottom: 1px solid #666 !important; border-radius: 0 !important; }
 """
 FOOTER = (
@@ -187,6 +192,7 @@ def print_book(site: Path, pages: list[str], target: Path) -> None:
         for _ in range(2):
             joined.write_text(join(site, pages, numbers), "utf-8")
             sheet = browser.new_page()
+            sheet.set_default_timeout(0)  # a busy machine takes its time
             sheet.goto(joined.as_uri())
             sheet.pdf(
                 path=str(target), prefer_css_page_size=True, print_background=True, outline=True, tagged=True,

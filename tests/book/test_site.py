@@ -91,6 +91,16 @@ def test_a_speaking_figure_passes() -> None:
     )
 
 
+def test_the_single_joint_is_stepped_and_its_four_steps_are_printed(site: Path) -> None:
+    page = BeautifulSoup((site / "book" / "classic.html").read_text("utf-8"), "html.parser")
+    ways = {figure["id"]: figure for figure in page.select("dh-link")}
+    joint = ways["live-fig-classic-joint"]
+    assert (joint["theta"], joint["alpha"], joint["index"]) == ("0", "-90", "1")
+    steps = re.compile(r"[RT][zx]\([θdaα]1\)")
+    assert len(steps.findall(joint.get_text())) == 4
+    assert not steps.findall(ways["live-fig-classic-link"].get_text()), "the other figure shows its link"
+
+
 def lone_marks(page: str) -> list[str]:
     """Return the marks that a browser may put on a line of their own, away from the formula before them."""
     formulas = BeautifulSoup(page, "html.parser").select("main span.math")
