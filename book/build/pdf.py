@@ -41,7 +41,10 @@ STYLE = """
   .formula use { stroke-width: 0; }
   .bd-article svg.dh-figure { max-height: 95mm; }
   section { border: 0; box-shadow: none; background: none; }
-  table { font-size: 9.5pt; } img, svg.dh-figure { max-width: 100%; }
+  table { font-size: 9.5pt; break-inside: avoid; } img, svg.dh-figure { max-width: 100%; }
+  #book-cheatsheet { font-size: 9pt; }
+  #book-cheatsheet :is(td, th) { padding: 0.2rem 0.5rem; }
+  #book-cheatsheet svg.dh-figure { max-height: 60mm; }
   .book-contents ol { list-style: none; padding: 0; }
   .book-contents li { display: flex; gap: 0.5em; margin: 0.15em 0; }
   .book-contents li::before { content: ""; order: 1; flex: 1; border-bottom: 1px dotted #999; margin-bottom: 0.3em; }
