@@ -31,7 +31,8 @@ def improper(poses: FloatArray) -> str:
     for k, name in enumerate(COLUMNS[:3]):
         off = lengths[np.argmax(np.abs(lengths[:, k] - 1)), k]
         if abs(off - 1) > ROUNDED:
-            return f"Column {name} has length {off:.3g}: the columns of a rotation are unit vectors."
+            length = off if off > ROUNDED else 0
+            return f"Column {name} has length {length:.3g}: the columns of a rotation are unit vectors."
     for j, k in ((0, 1), (1, 2), (0, 2)):
         if np.any(np.abs(np.sum(rotations[:, :, j] * rotations[:, :, k], axis=-1)) > ROUNDED):
             return f"Columns {COLUMNS[j]} and {COLUMNS[k]} are not at right angles, as the axes of a frame should be."

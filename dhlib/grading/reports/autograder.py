@@ -12,8 +12,6 @@ from dhlib.grading.reports.zips import packed
 
 SCRIPTS = ("setup.sh", "run_autograder")
 NAME = "gradescope-autograder.zip"
-#: Gradescope gives each submission a container of its own, in which inner walls may not be allowed.
-WALLS = ""
 
 
 def write(exercise: str, folder: Path | None = None) -> Files:
@@ -37,4 +35,4 @@ def write(exercise: str, folder: Path | None = None) -> Files:
 def template(name: str, exercise: str) -> bytes:
     """A script for one exercise, whose name `find_exercise` has checked to be a plain word."""
     text = (files("dhlib.grading.reports") / "templates" / name).read_text("utf-8")
-    return text.replace("@EXERCISE@", exercise).replace(" @WALLS@", f" {WALLS}" if WALLS else "").encode()
+    return text.replace("@EXERCISE@", exercise).encode()

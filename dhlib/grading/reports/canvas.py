@@ -47,7 +47,7 @@ def write(records: Sequence[Record], wishes: Wishes) -> Files:
         if seat is None:
             continue
         about = sections.get(seat.number, [record.name, seat.number, "", "", ""])
-        rows.append([*about, number(record.points)])
+        rows.append([*about, number(record.points) if record.marked else ""])
         page = (wishes.pages or {}).get(record.submission.id)
         if page is not None:
             pages[f"{seat.place}{FEEDBACK}"] = page

@@ -49,24 +49,29 @@ def class_page(records: Sequence[Record], find: Find, book: str = "") -> str:
     book : str
         Address of the book, for links.
     """
-    pages = [
-        _page([record for record in records if record.exercise == name], find, book)
-        for name in exercises_of(records)
-        if name
-    ]
+    names = [name for name in exercises_of(records) if name]
+    pages = []
+    for name in names or [""]:
+        # what cannot be read often does not say which exercise it is: where there is one only, it is that
+        mine = [r for r in records if r.exercise == name or (not r.exercise and len(names) < 2)]
+        if mine:
+            pages.append(_page(mine, find, book))
+    if len(names) > 1 and (unknown := [record for record in records if not record.exercise]):
+        pages.append(_page(unknown, find, book))
     return render("class.html", pages=pages, fewest=FEWEST, rare=RARE)
 
 
 def _page(records: Sequence[Record], find: Find, book: str) -> dict[str, Any]:
-    exercise = find(records[0])
-    marked = [record for record in records if record.answers]
+    named_one = next((record for record in records if record.exercise), records[0])
+    exercise = find(named_one)
+    marked = [record for record in records if record.marked]
     page: dict[str, Any] = {
-        "title": exercise.title if exercise else records[0].exercise,
+        "title": exercise.title if exercise else named_one.exercise or "Which exercise is not known",
         "students": len(records),
         "marked": len(marked),
         "date": max(record.submission.graded_at[:10] for record in records),
         "few": len(marked) < FEWEST,
-        "unmarked": [record for record in records if not record.answers],
+        "unmarked": [record for record in records if not record.marked],
     }
     if page["few"]:
         return page

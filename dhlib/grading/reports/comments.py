@@ -10,7 +10,7 @@ from dhlib.grading.sections import where
 
 def lines(record: Record) -> list[str]:
     """The result, what was changed by hand, and what to mend."""
-    told = [f"{number(record.points)} of {number(record.out_of)} points."]
+    told = [f"{number(record.points)} of {number(record.out_of)} points." if record.marked else "No marks."]
     told += [text for text in (record.submission.message, record.about_time) if text]
     told += [f"{signed(bonus.points)} points: {bonus.reason}" for bonus in record.bonuses]
     told += [line(answer) for answer in record.answers if not answer.passed or answer.adjustment]

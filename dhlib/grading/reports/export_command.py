@@ -84,8 +84,8 @@ def _of_results(options: argparse.Namespace) -> Files:
             for record in records_to_show(store, settings)
             if not options.exercise or record.exercise == options.exercise
         ]
-    if not records:
-        what = f" of {options.exercise}" if options.exercise else ""
-        raise DHError(f"there are no results{what} in {options.results}.")
-    pages = feedback_pages(records, settings) if chosen.needs_pages else None
+        if not records:
+            what = f" of {options.exercise}" if options.exercise else ""
+            raise DHError(f"there are no results{what} in {options.results}.")
+        pages = feedback_pages(store, records, settings) if chosen.needs_pages else None
     return chosen.write(records, Wishes(options.title, options.worksheet, settings.folder, pages))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 from typing import Any
 
 from markupsafe import Markup
@@ -17,10 +17,14 @@ from dhlib.grading.reports.comments import signed
 from dhlib.grading.reports.pages import drawn, render
 from dhlib.grading.reports.picture import picture
 from dhlib.grading.reports.records import Answer, Record
+from dhlib.grading.reports.settings import Settings
 from dhlib.grading.reports.shape import Shown, show
 
 #: Verdicts in black and white, for those who do not see the colours.
 SIGNS = {RIGHT: "✓", FOLLOWS: "✓", NEARLY: "≈", WRONG: "✗", OPEN: "○", UNREADABLE: "?"}
+
+#: Exercises that are kept at a time: with numbers of their own, each student has another.
+KEPT = 64
 
 Find = Callable[[Record], Exercise | None]
 """The exercise that a record is of, as it was given to this student; None if it cannot be found."""
@@ -119,15 +123,28 @@ def _part(exercise: Exercise | None, name: str) -> Part | None:
         return None
 
 
-def finder(folder: Any = None) -> Find:
-    """Finds exercises by their names, each once."""
-    from dhlib.grading.exercise import load_exercise
+def finder(settings: Settings, students: Mapping[int, str]) -> Find:
+    """Finds exercises as students were given them.
 
-    @cache
-    def load(name: str) -> Exercise | None:
+    Parameters
+    ----------
+    settings : Settings
+        Where exercises are looked for, and the key of the course if students have numbers of their own.
+    students : mapping of int to str
+        Number of a submission to whose it is: a record that is shown may have another name.
+    """
+    from dhlib.grading.course.papers import Papers
+
+    key = settings.read_key()
+    papers: dict[str, Papers] = {}
+
+    @lru_cache(maxsize=KEPT)
+    def load(name: str, student: str) -> Exercise | None:
         try:
-            return load_exercise(name, folder)
+            if name not in papers:
+                papers[name] = Papers(name, settings.folder)
+            return papers[name].of(key, student or None).exercise
         except DHError:
             return None
 
-    return lambda record: load(record.exercise)
+    return lambda record: load(record.exercise, students.get(record.submission.id, "") if key else "")

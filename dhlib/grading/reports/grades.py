@@ -31,15 +31,14 @@ def grades(records: Sequence[Record], pages: Mapping[int, str]) -> bytes:
     def row(record: Record) -> list[str]:
         submission = record.submission
         points = {column(record, answer.row.part): number(answer.points) for answer in record.answers}
-        marked = bool(record.answers)
         return [
             record.student,
             submission.name,
             submission.source,
             record.exercise,
             submission.status,
-            number(record.points) if marked else "",
-            number(record.out_of) if marked else "",
+            number(record.points) if record.marked else "",
+            number(record.out_of) if record.marked else "",
             number(record.deducted) if record.deducted else "",
             *(points.get(part, "") for part in parts),
             " ".join(text for text in (submission.message, record.about_time) if text),

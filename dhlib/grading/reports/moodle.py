@@ -66,7 +66,7 @@ def _row(record: Record) -> list[str]:
     assert seat is not None
     # "-" is what Moodle itself writes where nothing was graded yet
     status = "Submitted for grading"
-    marks = number(record.points), number(record.out_of)
+    marks = (number(record.points), number(record.out_of)) if record.marked else ("", "")
     return [f"Participant {seat.number}", record.name, status, *marks, "-", comment(record)]
 
 
@@ -96,7 +96,7 @@ def _filled(worksheet: Path, records: Sequence[Record]) -> bytes:
         scale = 1.0
         if maximum is not None and (most := _decimal(row[maximum])) and record.out_of:
             scale = most / record.out_of  # the assignment may be worth more or less than the notebook
-        row[grade] = number(record.points * scale)
+        row[grade] = number(record.points * scale) if record.marked else row[grade]
         if said is not None:
             row[said] = comment(record)
     file = io.StringIO(newline="")

@@ -84,6 +84,11 @@ class Record:
         return self.submission.exercise
 
     @property
+    def marked(self) -> bool:
+        """Whether there was anything to mark: a file that cannot be read has no points, not even 0."""
+        return bool(self.answers)
+
+    @property
     def out_of(self) -> float:
         """Points that could be earned."""
         return self.submission.out_of

@@ -26,17 +26,26 @@ class Settings:
         Whether names stay out.
     exercises : str
         Where exercises are looked for first.
+    key : str
+        Where the key of the course is, if students have numbers of their own; the key itself is not kept.
     """
 
     book: str = ""
     reveal: bool = False
     pseudonyms: bool = False
     exercises: str = ""
+    key: str = ""
 
     @property
     def folder(self) -> Path | None:
         """Where exercises are looked for first."""
         return Path(self.exercises) if self.exercises else None
+
+    def read_key(self) -> bytes | None:
+        """The key of the course; None if there is none, or it is not there any more."""
+        from dhlib.grading.course.keys import read_key
+
+        return read_key(self.key) if self.key and Path(self.key).exists() else None
 
 
 def read_settings(store: Store) -> Settings:

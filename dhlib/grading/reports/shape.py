@@ -158,7 +158,9 @@ def _where(asks: Valued, k: int, wrong: int, count: int) -> str:
     if isinstance(asks, Numbers):
         return ""
     if isinstance(asks, Formula):
-        said = ", ".join(f"{name} = {number_text(v)}" for name, v in zip(asks.symbols, probe[0], strict=True))
+        said = ", ".join(
+            f"{name.replace('theta', 'θ')} = {number_text(v)}" for name, v in zip(asks.symbols, probe[0], strict=True)
+        )
         place = f" at {said}"
     elif isinstance(asks, Function):
         name = asks.signature.partition("(")[0]

@@ -17,6 +17,8 @@ FEWEST = 5
 FEW_FOR_CORRELATION = 20
 #: How far from the median, in robust standard deviations, a result is worth a look.
 FAR = 3.0
+#: How clearly somebody must do well where others do badly; and how many parts each of right and wrong it takes.
+AGAINST, BOTH = -0.3, 3
 
 
 @dataclass(frozen=True)
@@ -130,6 +132,8 @@ def unusual(records: Sequence[Record]) -> list[Unusual]:
             side = "above" if record.points > middle else "below"
             found.append(Unusual(record, f"{record.points:g} points, far {side} the median of {middle:g}"))
         against = correlation(by_part[k] / worth, means / worth)
-        if against is not None and against < -0.1 and len(names) >= FEWEST:
+        passed = sum(answer.passed for answer in record.answers)
+        mixed = min(passed, len(record.answers) - passed) >= BOTH
+        if against is not None and against < AGAINST and mixed:
             found.append(Unusual(record, "right where most are wrong, and wrong where most are right"))
     return found

@@ -53,9 +53,10 @@ def write_reports(store: Store, folder: Path | None = None, only: Collection[str
     settings = read_settings(store)
     records = records_to_show(store, settings)
     names = page_names(records)
-    mine = None if only is None else {each.id for each in store.submissions() if each.student in only}
+    submissions = store.submissions()
+    mine = None if only is None else {each.id for each in submissions if each.student in only}
     pages = folder / FEEDBACK
-    find = finder(settings.folder)
+    find = finder(settings, {each.id: each.student for each in submissions})
     with _said(folder):
         pages.mkdir(parents=True, exist_ok=True)
         for record in records:
@@ -78,18 +79,18 @@ def records_to_show(store: Store, settings: Settings) -> list[Record]:
 
 def page_names(records: Sequence[Record]) -> dict[int, str]:
     """Number of each submission to the name of its feedback page."""
-    exercises = {record.exercise for record in records}
+    exercises = {record.exercise for record in records if record.exercise}
     titles = []
     for record in records:
         who = record.name if record.student else Path(record.submission.source or "unknown").stem
-        titles.append(f"{who}-{record.exercise}" if len(exercises) > 1 else who)
+        titles.append(f"{who}-{record.exercise}" if len(exercises) > 1 and record.exercise else who)
     names = file_names(titles)
     return {record.submission.id: f"{name}.html" for record, name in zip(records, names, strict=True)}
 
 
-def feedback_pages(records: Sequence[Record], settings: Settings) -> Mapping[int, bytes]:
+def feedback_pages(store: Store, records: Sequence[Record], settings: Settings) -> Mapping[int, bytes]:
     """The feedback page of each submission, by its number."""
-    find = finder(settings.folder)
+    find = finder(settings, {each.id: each.student for each in store.submissions()})
     return {
         record.submission.id: feedback_page(record, find, settings.book, settings.reveal).encode() for record in records
     }

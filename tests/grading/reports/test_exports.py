@@ -324,3 +324,17 @@ def test_several_exercises_are_refused_where_one_is_wanted(records, results):
     results.add(submission("123", "Ada Müller", source, rows, exercise="planar"), rows)
     with pytest.raises(DHError, match="planar, quickshot"):
         moodle.write(read_results(results), Wishes())
+
+
+def test_what_could_not_be_marked_gets_no_grade(records, results):
+    message = "x.ipynb is no notebook."
+    for number, source in (("9", "Eve_9_assignsubmission_file_/x.ipynb"), ("78", "eve_78_902_x.ipynb")):
+        results.add(submission(number, "Eve", source, status="unreadable", message=message, exercise="", out_of=0))
+    everybody = read_results(results)
+    rows = rows_of(moodle.write(everybody, Wishes())["moodle-grades.csv"])
+    (eve,) = (row for row in rows if row[0] == "Participant 9")
+    assert eve[3] == ""
+    assert message in eve[6]
+    (eve,) = (row for row in rows_of(canvas.write(everybody, Wishes())["canvas-grades.csv"]) if row[1] == "78")
+    assert eve[5] == ""
+    assert ("9", "") in [(row[0], row[5]) for row in rows_of(grades(everybody, {}))]

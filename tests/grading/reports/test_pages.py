@@ -17,6 +17,7 @@ from dhlib.grading.reports.pages import policy
 from dhlib.grading.reports.picture import picture
 from dhlib.grading.reports.records import read_results, renamed
 from dhlib.grading.reports.shape import show
+from dhlib.grading.reports.write import page_names
 from dhlib.grading.sections import CHAPTERS
 
 from .conftest import ROOT, exercise, hand_in, marked, odd, right, submission
@@ -255,6 +256,21 @@ def test_a_small_class_gets_no_statistics(records):
 
 def test_a_class_of_nobody_is_a_page():
     assert "Nothing was handed in yet" in class_page([], find)
+
+
+def test_a_file_that_says_nothing_stands_with_its_class(results):
+    rows = marked({"slip": right("slip")})
+    for k in range(5):
+        results.add(submission(str(k), f"S{k}", f"s{k}/x.ipynb", rows), rows)
+    lost = submission(
+        "9", "Eve", "eve/x.ipynb", status="unreadable", message="x.ipynb is a PDF.", exercise="", out_of=0
+    )
+    results.add(lost)
+    page = class_page(read_results(results), find)
+    assert page.count("<h1>") == 1
+    assert "Eve: x.ipynb is a PDF." in page
+    assert page_names(read_results(results)).keys() == {each.id for each in results.submissions()}
+    assert "S0.html" in page_names(read_results(results)).values()
 
 
 def test_everybody_alike_is_no_trouble(results):
