@@ -2,7 +2,8 @@
 
 Docutils gives literature a role that WAI-ARIA has given up; the theme names its search button, and MyST-NB what it
 folds, by other words than those that can be read on them, so that nobody who speaks to the computer can choose them.
-Regions that scroll get a place in the order of Tab, by ``book/web/scrolling.js``.
+Regions that scroll get a place in the order of Tab, by ``book/web/scrolling.js``; buttons that are pressed by keys keep
+the focus, by ``book/web/focus.js``.
 """
 
 from __future__ import annotations
@@ -60,13 +61,14 @@ def mend_pages(app: Sphinx, exception: Exception | None) -> None:
         start.write_text(first_page(found[1], str(app.config.html_title or app.config.project)), "utf-8")
 
 
-def add_script(app: Sphinx) -> None:
-    """Give every page the script for what scrolls."""
-    app.add_js_file(None, body=(ROOT / "book" / "web" / "scrolling.js").read_text("utf-8"))
+def add_scripts(app: Sphinx) -> None:
+    """Give every page its scripts."""
+    for name in ("scrolling.js", "focus.js"):
+        app.add_js_file(None, body=(ROOT / "book" / "web" / name).read_text("utf-8"))
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
-    app.connect("builder-inited", add_script)
+    app.connect("builder-inited", add_scripts)
     app.connect("build-finished", mend_pages, priority=650)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
