@@ -34,7 +34,7 @@ endif
 export UV_PYTHON_DOWNLOADS := never
 export UV_NO_CONFIG := 1
 
-.PHONY: help book serve pdf zip test lint exercises diagnosis solutions lock bench bench-lock test-library links release venv clean distclean
+.PHONY: help book serve pdf zip lighthouse test lint exercises diagnosis solutions lock bench bench-lock test-library links release venv clean distclean
 .DELETE_ON_ERROR:
 
 help:
@@ -67,6 +67,11 @@ serve: book
 pdf: book
 	@echo '── the book as a PDF ──'
 	@$(RUN) book/build/pdf.py _build/html dist/dh-book.pdf
+
+lighthouse: book
+	@echo '── Lighthouse: four pages on a simulated phone, five times each ──'
+	@cd bench/web && $(NPM) ci --no-progress --silent
+	@"$${DHBOOK_NODE:-node}" bench/web/lighthouse.mjs _build/html "$$(PYTHONPATH=book/build $(RUN) -c 'import chromium; print(chromium.find() or exit(chromium.ADVICE))')"
 
 zip: book
 	@echo '── the book to take along ──'

@@ -108,8 +108,8 @@ def test_a_bad_path_would_be_found(page: Any, address: str) -> None:
     page.evaluate(
         """() => {
             const style = document.createElement('style');
-            style.textContent = '* { outline: none !important; box-shadow: none !important; background: none !important;'
-                + 'border-color: red !important; text-decoration: none !important; }';
+            style.textContent = '* { outline: none !important; box-shadow: none !important; '
+                + 'background: none !important; ' + 'border-color: red !important; text-decoration: none !important; }';
             document.head.append(style);
             const first = document.querySelector('article h1, article p');
             first.insertAdjacentHTML('afterend', '<button tabindex="5">early</button>'
