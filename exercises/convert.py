@@ -3,7 +3,7 @@
 import numpy as np
 
 from dhlib import Chain, Rx, Rz, Tx, Tz
-from dhlib.grading.asking import choice, constant, pose
+from dhlib.grading.asking import choice, constant, pose, reasoned
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Function, Numbers, Table
 
@@ -279,7 +279,7 @@ EXERCISE = Exercise(
             section="sec-modified-product",
             arm=read_as("modified"),
         ),
-        choice(
+        reasoned(
             "label_1",
             "By one known pose",
             "modified",
@@ -288,9 +288,15 @@ EXERCISE = Exercise(
                 "modified": "the hand was measured where T_modified says.",
                 "cannot tell": "the two readings put the hand in different places, and one of them was measured.",
             },
+            {
+                "a": "",
+                "b": "nothing is said of parallel axes here.",
+                "c": "these rows differ from each other.",
+                "d": "columns can be printed in any order: that proves nothing.",
+            },
             "sec-both-tell-pose",
         ),
-        choice(
+        reasoned(
             "label_2",
             "By the upper arm",
             "classic",
@@ -299,9 +305,15 @@ EXERCISE = Exercise(
                 "modified": "in a modified table row 2 holds the link between axes 1 and 2, and they are not parallel.",
                 "cannot tell": "the link between axes 2 and 3 is known: in which row does it stand?",
             },
+            {
+                "a": "no pose of this arm is known.",
+                "b": "",
+                "c": "these rows differ from each other.",
+                "d": "columns can be printed in any order: that proves nothing.",
+            },
             "sec-both-tell-parallel",
         ),
-        choice(
+        reasoned(
             "label_3",
             "Three equal rows",
             "cannot tell",
@@ -309,6 +321,12 @@ EXERCISE = Exercise(
                 "classic": "moved down by a row, would the columns look different?",
                 "modified": "moved up by a row, would the columns look different?",
                 "cannot tell": "all rows are equal: read either way it is the same arm, with another base or tool.",
+            },
+            {
+                "a": "no pose of this arm is known.",
+                "b": "the links of all rows lie between parallel axes: none of them stands out.",
+                "c": "",
+                "d": "columns can be printed in any order: that proves nothing.",
             },
             "sec-both-tell-never",
         ),

@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 
 from dhlib import Chain, Tx, Ty, Tz, robots
-from dhlib.grading.asking import choice
+from dhlib.grading.asking import choice, reasoned
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Function, Numbers, Table
 
@@ -84,6 +84,21 @@ def translation(part, title, points, rows, other, zeros, senses=1, *, section, t
 def kind_of(part, title, right, section, **because):
     """Which of three an arm is; the words say why, or what to look at."""
     return choice(part, title, right, because, section)
+
+
+#: What tells, by the letters of the page, and what to say where it does not hold.
+TELLS = {
+    "a": "every angle between neighbouring axes has the size that it has in PUMA.",
+    "b": "here that sum is another, or the two axes are not parallel.",
+    "c": "count the changes of sign, and what each of them does alone.",
+    "d": "more than one sign is changed, or a size with it.",
+}
+
+
+def told_by(part, title, right, letters, section, **because):
+    """Which of three an arm is, and what tells."""
+    reasons = {letter: "" if letter in letters else says for letter, says in TELLS.items()}
+    return reasoned(part, title, right, because, reasons, section)
 
 
 def hand(signs, letters=HAND):
@@ -231,37 +246,41 @@ EXERCISE = Exercise(
                 ),
             ],
         ),
-        kind_of(
+        told_by(
             "puma_1",
             "Table 1",
             "mirror",
+            "d",
             "sec-puma560-hand",
             same="no choice of frames changes the sign of d3 and nothing else.",
             mirror="every length and every angle fits, but the forearm is on the other side of the shoulder.",
             another="all distances and all angles between the axes are as they were: the sizes have not changed.",
         ),
-        kind_of(
+        told_by(
             "puma_2",
             "Table 2",
             "same",
+            "c",
             "sec-puma560-parity",
             same="two signs that are each wrong alone undo each other; some joints count otherwise.",
             mirror="the sign of each alone makes the mirror image. And both?",
             another="all distances and all angles between the axes are as they were: the sizes have not changed.",
         ),
-        kind_of(
+        told_by(
             "puma_3",
             "Table 3",
             "same",
+            "b",
             "sec-placing-parallel",
             same="axes 2 and 3 are parallel: only the sum of d2 and d3 counts, and it is 0.15.",
             mirror="in a mirror the sum of d2 and d3 would be negative. What is it here?",
             another="axes 2 and 3 are parallel. What counts of d2 and d3?",
         ),
-        kind_of(
+        told_by(
             "puma_4",
             "Table 4",
             "another",
+            "a",
             "sec-puma560-trap-bracket",
             same="compare the angle between axes 1 and 2, in a classic table that of row 1.",
             mirror="a mirror keeps the size of each angle. Compare that between axes 1 and 2.",
