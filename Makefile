@@ -39,6 +39,7 @@ export UV_NO_CONFIG := 1
 
 help:
 	@echo 'make book       build the book into _build/html and print its address'
+	@echo 'make book EDITION=course   the same without solutions and references, into _build/course'
 	@echo 'make pdf        print the whole book into dist/dh-book.pdf (needs Chromium)'
 	@echo 'make zip        pack the book, its notebooks and the library into dist/dh-book.zip, to read offline'
 	@echo 'make test       lint, types and all tests (FULL=1: the long parts whole)'
@@ -56,10 +57,18 @@ help:
 HTML := _build/html/index.html
 READY := $(VENV_READY) $(NODE_READY)
 
+# EDITION=course leaves out the solutions, and all that says which answers are right.
+EDITION := full
+ifeq ($(EDITION),course)
+book: $(READY)
+	@echo '── the book, for a course ──'
+	@$(RUN) book/build/course.py _build/course
+else
 book: $(READY)
 	@echo '── the book ──'
 	@$(BIN)/jupyter-book build . -n -W --keep-going
 	@$(RUN) -c 'import pathlib; print("\nRead the book:", pathlib.Path("$(HTML)").resolve().as_uri())'
+endif
 
 serve: book
 	@$(RUN) book/build/serve.py _build/html

@@ -83,7 +83,7 @@ def copy_sources(copy: Path) -> Path:
     """Copy what the book is built from."""
     copy.mkdir()
     ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "*.png")
-    for name in ("dhlib", "book", "exercises", "requirements"):
+    for name in ("dhlib", "book", "exercises", "solutions", "requirements"):
         if (ROOT / name).exists():
             shutil.copytree(ROOT / name, copy / name, ignore=ignore)
     for name in ("_config.yml", "_toc.yml", "package-lock.json"):

@@ -122,6 +122,23 @@ def open_regions(source: str, here: str = "the cell") -> str:
     return "\n".join(lines)
 
 
+def close_regions(source: str) -> str:
+    r"""Source with every solution region replaced by its answer: what a page of the solution shows.
+
+    Examples
+    --------
+    >>> close_regions("x = 1\n### solution\nA = x + 1\n### yours\n# A = ...\n### end")
+    'x = 1\nA = x + 1'
+    """
+    lines, state = [], MARKS[2]
+    for line in source.splitlines():
+        if line.strip() in MARKS:
+            state = line.strip()
+        elif state != MARKS[1]:
+            lines.append(line)
+    return "\n".join(lines).rstrip()
+
+
 def as_text(notebook: dict[str, Any]) -> str:
     """A notebook as it is stored."""
     return json.dumps(notebook, indent=1, ensure_ascii=False, sort_keys=True) + "\n"

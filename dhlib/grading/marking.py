@@ -66,8 +66,8 @@ def mark(part: Part, reading: Any, earlier: Mapping[str, Earlier] | None = None,
     --------
     >>> from dhlib.grading.exercise import load_exercise
     >>> part = load_exercise("quickshot").part("slip")
-    >>> print(mark(part, {"choice": "n_z"}))
-    slip: not yet. n_z is right as printed: it is -S23 C4, written out.
+    >>> print(mark(part, {"choice": "p_z"}))
+    slip: cannot be read. It should be one of n_x, n_y, n_z, in quotation marks.
     """
     return judge(part, reading, earlier or {}, reveal).mark
 

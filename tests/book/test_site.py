@@ -12,6 +12,8 @@ from building import build_book, pages_of
 from fontTools.ttLib import TTFont
 from truth import silent_figures
 
+import dhlib
+
 pytestmark = pytest.mark.book
 
 OF_SPHINX = {"index.html", "search.html", "genindex.html", "py-modindex.html"}
@@ -39,6 +41,8 @@ def unexpected(files: set[str], pages: dict[str, Path]) -> set[str]:
     """Return the files of a site that nothing accounts for."""
     allowed = {f"{name}.html" for name in pages} | OF_SPHINX | EXTRAS
     allowed |= {f"notebooks/{source.stem}.ipynb" for source in pages.values() if source.parent.name == "book"}
+    allowed |= {f"notebooks/{name}.ipynb" for name in pages if name.startswith("exercises/")}
+    allowed.add(f"library/dhlib-{dhlib.__version__}-py3-none-any.whl")
     static = re.compile(
         r"_static/.*\.(css|js|svg|png|woff2|LICENSE\.txt)|_images/[\w.-]+\.(svg|png)|_downloads/[0-9a-f]{32}/[\w.-]+"
         r"|live/(link|robot|place|space)\.js|icons/icon(-192\.png|-512\.png|-masked-512\.png|\.svg)"
@@ -58,7 +62,15 @@ def test_only_what_is_listed_is_published(site: Path, root: Path) -> None:
 
 @pytest.mark.parametrize(
     "stray",
-    ["README.html", "solutions/quickshot.html", "_sources/solutions/quickshot.ipynb", "_static/key.pem", "dhlib/x.py"],
+    [
+        "README.html",
+        "solutions/other.html",
+        "notebooks/solutions/quickshot.ipynb",
+        "library/x.whl",
+        "_sources/solutions/quickshot.ipynb",
+        "_static/key.pem",
+        "dhlib/x.py",
+    ],
 )
 def test_a_stray_file_would_be_found(site: Path, root: Path, stray: str) -> None:
     assert unexpected({*files_of(site), stray}, listed(root)) == {stray}
