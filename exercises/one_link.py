@@ -1,5 +1,6 @@
 """What the exercise on one link asks, and how it is marked."""
 
+from dataclasses import dataclass
 from functools import reduce
 from itertools import permutations
 
@@ -7,6 +8,7 @@ import numpy as np
 
 from dhlib import Chain, Revolute, Rx, Ry, Rz, Tx, Ty, Tz, classic, modified
 from dhlib.grading.asking import choice, constant, number
+from dhlib.grading.course.sources import matrix as matrix_text
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Function, Numbers
 from dhlib.grading.misconceptions import retold
@@ -14,15 +16,69 @@ from dhlib.grading.misconceptions import retold
 CLASSIC, MODIFIED = ("theta", "d", "a", "alpha"), ("alpha", "a", "theta", "d")
 CALLS = [tuple(map(float, row)) for row in np.random.default_rng(5).uniform(-2.5, 2.5, (8, 4))]
 
-#: The link whose parameters are to be read off its matrix.
-LINK = {"theta": np.deg2rad(-130), "d": 85.0, "a": 140.0, "alpha": np.deg2rad(55)}
-#: Frames {1} as seen from {0}: what each obeys is asked.
-FRAMES = {
-    1: Rz(0.6) @ Tz(70) @ Tx(120) @ Rx(-0.8),
-    2: Rz(0.6) @ Ty(35) @ Tz(70) @ Tx(120) @ Rx(-0.8),
-    3: Rz(0.6) @ Tz(70) @ Ry(-0.3) @ Tx(120) @ Rx(-0.8),
-    4: Rx(-0.8) @ Tx(120) @ Rz(0.6) @ Tz(70),
-}
+
+@dataclass(frozen=True)
+class Given:
+    """The numbers of the task: lengths in mm, angles in degrees or, of the frames, in radians."""
+
+    theta: float = -130
+    d: float = 85.0
+    a: float = 140.0
+    alpha: float = 55
+    turn: float = 0.6
+    up: float = 70
+    out: float = 120
+    twist: float = -0.8
+    aside: float = 35
+    lean: float = 0.3
+    #: What the first three pairs of frames obey.
+    order: tuple[str, ...] = ("both hold", "DH2 fails", "DH1 fails")
+
+    @property
+    def LINK(self):
+        """The link whose parameters are to be read off its matrix."""
+        return {"theta": np.deg2rad(self.theta), "d": self.d, "a": self.a, "alpha": np.deg2rad(self.alpha)}
+
+    @property
+    def frames(self):
+        """Frames {1} as seen from {0}: what each obeys is asked."""
+        up, out = Tz(self.up), Tx(self.out) @ Rx(self.twist)
+        pairs = {
+            "both hold": Rz(self.turn) @ up @ out,
+            "DH2 fails": Rz(self.turn) @ Ty(self.aside) @ up @ out,
+            "DH1 fails": Rz(self.turn) @ up @ Ry(-self.lean) @ out,
+        }
+        return [*(pairs[kind] for kind in self.order), Rx(self.twist) @ Tx(self.out) @ Rz(self.turn) @ up]
+
+
+DEFAULT = Given()
+
+
+def draw(lots):
+    """Another link, with theta beyond a quarter turn; other frames, the first three in another order."""
+    orders = [tuple(order) for order in permutations(DEFAULT.order) if tuple(order) != DEFAULT.order]
+    return Given(
+        theta=lots.one("theta", [-155, -145, -125, -115, -110, 110, 115, 125, 145, 155]),
+        d=lots.one("d", range(61, 81, 2)),
+        a=lots.one("a", range(112, 138, 3)),
+        alpha=lots.one("alpha", [-75, -65, -40, -35, -25, 25, 35, 40, 65, 75]),
+        turn=lots.one("turn", [0.35, 0.45, 0.5, 0.7, 0.75, 0.85]),
+        up=lots.one("up", range(44, 68, 4)),
+        out=lots.one("out", range(92, 119, 5)),
+        twist=lots.one("twist", [-0.95, -0.7, -0.6, 0.55, 0.65, 0.9]),
+        aside=lots.one("aside", [22, 24, 26, 28, 31, 33]),
+        lean=lots.one("lean", [0.16, 0.18, 0.22, 0.24, 0.26, 0.28]),
+        order=lots.one("order", orders),
+    )
+
+
+def cells(given):
+    """The given cells of the notebook."""
+    A = link("classic", CLASSIC)(*given.LINK.values()).A(1, [given.LINK["theta"]])
+    return {
+        "link": matrix_text("A", A, 4),
+        "frames": "\n".join(matrix_text(f"F{k}", frame, 4) for k, frame in enumerate(given.frames, 1)),
+    }
 
 
 def link(convention, names):
@@ -45,7 +101,7 @@ def formula(part, title, points, convention, names, section, shape=(4, 4), traps
     make, take = link(convention, names), matrix(names, **entries)
     asks = Formula(lambda arm, q: take(make(*q), *q), shape=shape, symbols=names)
     told = retold(lambda q: make(*q), lambda arm, q: take(arm, *q), ((0.3, 0.4, 0.5, 0.6),))
-    arm = link(convention, CLASSIC)(*LINK.values())
+    arm = link(convention, CLASSIC)(*DEFAULT.LINK.values())
     return Part(part, title, points, asks, section=section, arm=arm, traps=[*traps, *told], kinematics=False)
 
 
@@ -53,13 +109,13 @@ def function(part, title, points, convention, names, section):
     """The link matrix as a function."""
     make, take = link(convention, names), matrix(names)
     asks = Function(lambda arm, *p: take(make(*p), *p), calls=CALLS, signature=f"{part}({', '.join(names)})")
-    arm = link(convention, CLASSIC)(*LINK.values())
+    arm = link(convention, CLASSIC)(*DEFAULT.LINK.values())
     return Part(
         part, title, points, asks, section=section, arm=arm, traps=retold(make, take, CALLS[0]), kinematics=False
     )
 
 
-def measured(part, title, names, tolerance, traps):
+def measured(LINK, part, title, names, tolerance, traps):
     """Two parameters of LINK, read off its matrix."""
     asks = Numbers(lambda arm, _: [LINK[name] for name in names], shape=(2,), at=(), tolerance=tolerance)
     return Part(part, title, 2, asks, section="sec-classic-measure", traps=traps)
@@ -108,212 +164,248 @@ def modified_both(A):
     return abs(A[0, 2]) < 1e-9 and abs(A[1, 2] * A[2, 3] - A[2, 2] * A[1, 3]) < 1e-9
 
 
-EXERCISE = Exercise(
-    name="one_link",
-    title="One link",
-    arm=link("classic", CLASSIC)(*LINK.values()),
-    parts=[
-        formula("A_sym", "The classic link matrix", 2, "classic", CLASSIC, "sec-classic-product"),
-        function("classic_link", "The same as a function", 2, "classic", CLASSIC, "sec-classic-product"),
-        formula("B_sym", "The modified link matrix", 2, "modified", MODIFIED, "sec-modified-product"),
-        function("modified_link", "The same as a function", 2, "modified", MODIFIED, "sec-modified-product"),
-        Part(
-            "factor",
-            "A wrong factor",
-            1,
-            Choice(
-                {
-                    "first": "Rx(α) is right: the modified link begins with the twist about x of the frame before.",
-                    "second": "Tx(a) is right: the link length goes along the same x as the twist.",
-                    "third": "Rz(θ) is right: the joint turns about the new z.",
-                    "fourth": "the offset d goes along z, the axis that the joint turns about: the factor is Tz(d).",
-                },
-                right="fourth",
+PAIRS = {
+    "both hold": "the line of x1 meets z0 at a right angle.",
+    "DH2 fails": "the line of x1 is level, but it passes z0 at a distance.",
+    "DH1 fails": "the line of x1 meets z0, but at a slant.",
+}
+
+
+def exercise(given):
+    """The exercise with these numbers."""
+    LINK, lean = given.LINK, given.lean
+    pushed = given.frames[given.order.index("DH2 fails")]
+    return Exercise(
+        name="one_link",
+        title="One link",
+        arm=link("classic", CLASSIC)(*LINK.values()),
+        parts=[
+            formula("A_sym", "The classic link matrix", 2, "classic", CLASSIC, "sec-classic-product"),
+            function("classic_link", "The same as a function", 2, "classic", CLASSIC, "sec-classic-product"),
+            formula("B_sym", "The modified link matrix", 2, "modified", MODIFIED, "sec-modified-product"),
+            function("modified_link", "The same as a function", 2, "modified", MODIFIED, "sec-modified-product"),
+            Part(
+                "factor",
+                "A wrong factor",
+                1,
+                Choice(
+                    {
+                        "first": "Rx(α) is right: the modified link begins with the twist about x of the frame before.",
+                        "second": "Tx(a) is right: the link length goes along the same x as the twist.",
+                        "third": "Rz(θ) is right: the joint turns about the new z.",
+                        "fourth": "the offset d goes along z, the axis of the joint: the factor is Tz(d).",
+                    },
+                    right="fourth",
+                ),
+                section="sec-modified-slip",
             ),
-            section="sec-modified-slip",
-        ),
-        formula(
-            "origin",
-            "The position, mended",
-            1,
-            "modified",
-            MODIFIED,
-            "sec-modified-slip",
-            shape=(3,),
-            rows=slice(3),
-            columns=3,
-            traps=[
-                Trap(
-                    "This is the position of the printed product, with d along x.",
-                    lambda arm, q: modified(q[0], q[1], q[2], 0)[:3, :3] @ [q[3], 0, 0] + [q[1], 0, 0],
-                ),
-                Trap(
-                    "This is the position of the classic convention, a cos θ, a sin θ, d.",
-                    lambda arm, q: classic(q[2], q[3], q[1], q[0])[:3, 3],
-                    "convention",
-                ),
-            ],
-        ),
-        measured(
-            "angles",
-            "Two angles, read off",
-            ("theta", "alpha"),
-            2e-3,
-            [
-                Trap(
-                    "These are degrees; radians are asked for.",
-                    constant(np.rad2deg([LINK["theta"], LINK["alpha"]])),
-                    "degrees",
-                ),
-                Trap("The two angles are exchanged: θ first, then α.", constant([LINK["alpha"], LINK["theta"]])),
-                Trap(
-                    "θ lies in the wrong quadrant: arctan of a quotient cannot tell, arctan2(sine, cosine) can.",
-                    constant([LINK["theta"] + np.pi, LINK["alpha"]]),
-                ),
-                Trap(
-                    "A cosine alone does not tell the sign of an angle: take its sine too, with arctan2.",
-                    constant([-LINK["theta"], LINK["alpha"]]),
-                ),
-                Trap(
-                    "A sine alone does not tell an angle: take the cosine too, with arctan2.",
-                    constant([-np.pi - LINK["theta"], LINK["alpha"]]),
-                ),
-                Trap(
-                    "α has the wrong sign: its sine stands in row 3.", constant([LINK["theta"], -LINK["alpha"]]), "sign"
-                ),
-                Trap("Both angles have the wrong sign.", constant([-LINK["theta"], -LINK["alpha"]])),
-            ],
-        ),
-        measured(
-            "lengths",
-            "Two lengths, read off",
-            ("d", "a"),
-            0.1,
-            [
-                Trap(
-                    "The two lengths are exchanged: d goes along z, a along x.",
-                    constant([LINK["a"], LINK["d"]]),
-                    "a_and_d",
-                ),
-                Trap(
-                    "a has the wrong sign: the position is (a cos θ, a sin θ, d), with the θ of the rotation.",
-                    constant([LINK["d"], -LINK["a"]]),
-                    "sign",
-                ),
-                Trap(
-                    "This a is the x coordinate of the origin; a is measured along the new x.",
-                    constant([LINK["d"], LINK["a"] * np.cos(LINK["theta"])]),
-                ),
-                Trap(
-                    "This a is the y coordinate of the origin; a is measured along the new x.",
-                    constant([LINK["d"], LINK["a"] * np.sin(LINK["theta"])]),
-                ),
-                Trap(
-                    "This a is the distance of the origins; the part of it along z is d.",
-                    constant([LINK["d"], np.hypot(LINK["a"], LINK["d"])]),
-                ),
-            ],
-        ),
-        conditions("pair_1", "Frames, first pair", "both hold", "the line of x1 meets z0 at a right angle."),
-        conditions(
-            "pair_2", "Frames, second pair", "DH2 fails", "the line of x1 is level, but it passes z0 at a distance."
-        ),
-        conditions("pair_3", "Frames, third pair", "DH1 fails", "the line of x1 meets z0, but at a slant."),
-        conditions(
-            "pair_4", "Frames, fourth pair", "both fail", "the line of x1 is slanted, and it passes z0 at a distance."
-        ),
-        conditions(
-            "pair_4_modified",
-            "The fourth pair once more",
-            "both hold",
-            "the line of x0 meets z1 at a right angle: these are modified frames.",
-            section="sec-modified-check",
-        ),
-        number(
-            "tilt",
-            "By how much DH1 fails",
-            np.rad2deg(0.3),
-            "sec-classic-dh1",
-            [
-                (0.3, "This is in radians; degrees are asked for.", "degrees"),
-                (np.sin(0.3), "This is the entry r31, the sine of the angle; asked for is the angle, in degrees."),
-                (90 + np.rad2deg(0.3), "This is the angle between x1 and z0; asked for is by how much it is off 90°."),
-                (90 - np.rad2deg(0.3), "This is the angle between x1 and z0; asked for is by how much it is off 90°."),
-            ],
-            tolerance=0.05,
-        ),
-        number(
-            "miss",
-            "By how much DH2 fails",
-            35.0,
-            "sec-classic-dh2",
-            [
-                (np.hypot(35, 120), "This is how far the origin of {1} is from z0; x1 as a line comes closer to it."),
-                (
-                    float(np.linalg.norm(FRAMES[2][:3, 3])),
-                    "This is the distance of the origins; asked for is that of the lines.",
-                ),
-                (70.0, "This is the height of the origin; asked for is the distance of the lines of x1 and z0."),
-                (
-                    120.0,
-                    "This is how far the origin is from the normal, along x1; asked for is the normal itself.",
-                ),
-            ],
-            tolerance=0.1,
-        ),
-        Part(
-            "obeys",
-            "Which of the 24 orders",
-            3,
-            Numbers(constant(ones(both)), shape=(24,), at=()),
-            section="sec-classic-orders",
-            traps=[
-                Trap("Here DH1 alone is tested; DH2 has to hold too.", constant(ones(dh1))),
-                Trap("Here DH2 alone is tested; DH1 has to hold too.", constant(ones(dh2))),
-                Trap("One condition is enough here; both have to hold.", constant(ones(lambda A: dh1(A) or dh2(A)))),
-                Trap("Here 1 and 0 are exchanged: 1 stands for an order that obeys both.", constant(1 - ones(both))),
-                Trap(
-                    "These are the orders that obey the conditions of the modified convention.",
-                    constant(ones(modified_both)),
-                    "convention",
-                ),
-                Trap(
-                    "Only one order is found, and some steps may change places without changing the product.",
-                    constant(np.array([float(order == ("Rz", "Tz", "Tx", "Rx")) for order in ORDERS])),
-                ),
-                Trap(
-                    "One order is missing: Tx and Tz may change places too, where no turn stands between them.",
-                    constant(np.array([float({*order[:2]} == {"Rz", "Tz"}) for order in ORDERS])),
-                ),
-            ],
-        ),
-        number(
-            "products",
-            "How many matrices",
-            8,
-            "sec-classic-orders",
-            [
-                (24, "That is how many orders there are: many of them give the same matrix."),
-                (5, "That is how many orders give the classic link matrix; now count different matrices."),
-                (20, "Only the classic five are counted as one here: other orders have equal products too."),
-                (12, "Neighbours about one axis may change places, and so may Tx and Tz when they are neighbours."),
-                (2, "There are more than the two conventions: compare all products at random values."),
-            ],
-        ),
-        Part(
-            "exception",
-            "Twist before turn",
-            1,
-            Choice(
-                {
-                    "Tz Rx Rz Tx": "its line of x1 still meets z0, though at a slant: DH2 alone is no comfort.",
-                    "Rx Tz Rz Tx": "here x1 passes z0 at a distance: the offset goes along the twisted z.",
-                    "Tz Tx Rx Rz": "here x1 passes z0 at a distance: the way a goes along the old x.",
-                    "Rx Tx Rz Tz": "this is the modified order; its x1 and z0 pass at a distance.",
-                },
-                right="Tz Rx Rz Tx",
+            formula(
+                "origin",
+                "The position, mended",
+                1,
+                "modified",
+                MODIFIED,
+                "sec-modified-slip",
+                shape=(3,),
+                rows=slice(3),
+                columns=3,
+                traps=[
+                    Trap(
+                        "This is the position of the printed product, with d along x.",
+                        lambda arm, q: modified(q[0], q[1], q[2], 0)[:3, :3] @ [q[3], 0, 0] + [q[1], 0, 0],
+                    ),
+                    Trap(
+                        "This is the position of the classic convention, a cos θ, a sin θ, d.",
+                        lambda arm, q: classic(q[2], q[3], q[1], q[0])[:3, 3],
+                        "convention",
+                    ),
+                ],
             ),
-            section="sec-classic-orders",
-        ),
-    ],
-)
+            measured(
+                LINK,
+                "angles",
+                "Two angles, read off",
+                ("theta", "alpha"),
+                2e-3,
+                [
+                    Trap(
+                        "These are degrees; radians are asked for.",
+                        constant(np.rad2deg([LINK["theta"], LINK["alpha"]])),
+                        "degrees",
+                    ),
+                    Trap("The two angles are exchanged: θ first, then α.", constant([LINK["alpha"], LINK["theta"]])),
+                    Trap(
+                        "θ lies in the wrong quadrant: arctan of a quotient cannot tell, arctan2(sine, cosine) can.",
+                        constant([LINK["theta"] + np.pi, LINK["alpha"]]),
+                    ),
+                    Trap(
+                        "A cosine alone does not tell the sign of an angle: take its sine too, with arctan2.",
+                        constant([-LINK["theta"], LINK["alpha"]]),
+                    ),
+                    Trap(
+                        "A sine alone does not tell an angle: take the cosine too, with arctan2.",
+                        constant([-np.pi - LINK["theta"], LINK["alpha"]]),
+                    ),
+                    Trap(
+                        "α has the wrong sign: its sine stands in row 3.",
+                        constant([LINK["theta"], -LINK["alpha"]]),
+                        "sign",
+                    ),
+                    Trap("Both angles have the wrong sign.", constant([-LINK["theta"], -LINK["alpha"]])),
+                ],
+            ),
+            measured(
+                LINK,
+                "lengths",
+                "Two lengths, read off",
+                ("d", "a"),
+                0.1,
+                [
+                    Trap(
+                        "The two lengths are exchanged: d goes along z, a along x.",
+                        constant([LINK["a"], LINK["d"]]),
+                        "a_and_d",
+                    ),
+                    Trap(
+                        "a has the wrong sign: the position is (a cos θ, a sin θ, d), with the θ of the rotation.",
+                        constant([LINK["d"], -LINK["a"]]),
+                        "sign",
+                    ),
+                    Trap(
+                        "This a is the x coordinate of the origin; a is measured along the new x.",
+                        constant([LINK["d"], LINK["a"] * np.cos(LINK["theta"])]),
+                    ),
+                    Trap(
+                        "This a is the y coordinate of the origin; a is measured along the new x.",
+                        constant([LINK["d"], LINK["a"] * np.sin(LINK["theta"])]),
+                    ),
+                    Trap(
+                        "This a is the distance of the origins; the part of it along z is d.",
+                        constant([LINK["d"], np.hypot(LINK["a"], LINK["d"])]),
+                    ),
+                ],
+            ),
+            *(
+                conditions(f"pair_{k}", f"Frames, {word} pair", kind, PAIRS[kind])
+                for k, (word, kind) in enumerate(zip(("first", "second", "third"), given.order, strict=True), 1)
+            ),
+            conditions(
+                "pair_4",
+                "Frames, fourth pair",
+                "both fail",
+                "the line of x1 is slanted, and it passes z0 at a distance.",
+            ),
+            conditions(
+                "pair_4_modified",
+                "The fourth pair once more",
+                "both hold",
+                "the line of x0 meets z1 at a right angle: these are modified frames.",
+                section="sec-modified-check",
+            ),
+            number(
+                "tilt",
+                "By how much DH1 fails",
+                np.rad2deg(lean),
+                "sec-classic-dh1",
+                [
+                    (lean, "This is in radians; degrees are asked for.", "degrees"),
+                    (np.sin(lean), "This is the entry r31, the sine of the angle; asked for is the angle, in degrees."),
+                    (
+                        90 + np.rad2deg(lean),
+                        "This is the angle between x1 and z0; asked for is by how much it is off 90°.",
+                    ),
+                    (
+                        90 - np.rad2deg(lean),
+                        "This is the angle between x1 and z0; asked for is by how much it is off 90°.",
+                    ),
+                ],
+                tolerance=0.05,
+            ),
+            number(
+                "miss",
+                "By how much DH2 fails",
+                given.aside,
+                "sec-classic-dh2",
+                [
+                    (
+                        np.hypot(given.aside, given.out),
+                        "This is how far the origin of {1} is from z0; x1 as a line comes closer to it.",
+                    ),
+                    (
+                        float(np.linalg.norm(pushed[:3, 3])),
+                        "This is the distance of the origins; asked for is that of the lines.",
+                    ),
+                    (
+                        given.up,
+                        "This is the height of the origin; asked for is the distance of the lines of x1 and z0.",
+                    ),
+                    (
+                        given.out,
+                        "This is how far the origin is from the normal, along x1; asked for is the normal itself.",
+                    ),
+                ],
+                tolerance=0.1,
+            ),
+            Part(
+                "obeys",
+                "Which of the 24 orders",
+                3,
+                Numbers(constant(ones(both)), shape=(24,), at=()),
+                section="sec-classic-orders",
+                traps=[
+                    Trap("Here DH1 alone is tested; DH2 has to hold too.", constant(ones(dh1))),
+                    Trap("Here DH2 alone is tested; DH1 has to hold too.", constant(ones(dh2))),
+                    Trap(
+                        "One condition is enough here; both have to hold.", constant(ones(lambda A: dh1(A) or dh2(A)))
+                    ),
+                    Trap(
+                        "Here 1 and 0 are exchanged: 1 stands for an order that obeys both.", constant(1 - ones(both))
+                    ),
+                    Trap(
+                        "These are the orders that obey the conditions of the modified convention.",
+                        constant(ones(modified_both)),
+                        "convention",
+                    ),
+                    Trap(
+                        "Only one order is found, and some steps may change places without changing the product.",
+                        constant(np.array([float(order == ("Rz", "Tz", "Tx", "Rx")) for order in ORDERS])),
+                    ),
+                    Trap(
+                        "One order is missing: Tx and Tz may change places too, where no turn stands between them.",
+                        constant(np.array([float({*order[:2]} == {"Rz", "Tz"}) for order in ORDERS])),
+                    ),
+                ],
+            ),
+            number(
+                "products",
+                "How many matrices",
+                8,
+                "sec-classic-orders",
+                [
+                    (24, "That is how many orders there are: many of them give the same matrix."),
+                    (5, "That is how many orders give the classic link matrix; now count different matrices."),
+                    (20, "Only the classic five are counted as one here: other orders have equal products too."),
+                    (12, "Neighbours about one axis may change places, and so may Tx and Tz when they are neighbours."),
+                    (2, "There are more than the two conventions: compare all products at random values."),
+                ],
+            ),
+            Part(
+                "exception",
+                "Twist before turn",
+                1,
+                Choice(
+                    {
+                        "Tz Rx Rz Tx": "its line of x1 still meets z0, though at a slant: DH2 alone is no comfort.",
+                        "Rx Tz Rz Tx": "here x1 passes z0 at a distance: the offset goes along the twisted z.",
+                        "Tz Tx Rx Rz": "here x1 passes z0 at a distance: the way a goes along the old x.",
+                        "Rx Tx Rz Tz": "this is the modified order; its x1 and z0 pass at a distance.",
+                    },
+                    right="Tz Rx Rz Tx",
+                ),
+                section="sec-classic-orders",
+            ),
+        ],
+    )
+
+
+EXERCISE = exercise(DEFAULT)
