@@ -30,7 +30,15 @@ COMMANDS = {
     "dhlib grade handed-in --out marks": Outcome(0, r"marks/grades\.csv"),
 }
 #: Run elsewhere: by tests of their own, and by whoever builds the book.
-TESTED_ELSEWHERE = {"make exercises"}
+TESTED_ELSEWHERE = {"make book EDITION=course"}
+#: One after the other, in a folder of their own.
+CLOSED_COURSE = {
+    "dhlib key course.key": r"out of git",
+    "dhlib assign quickshot --roster roster.csv --key course.key --out week-3 --due 2030-05-31": r"2 notebooks",
+    "dhlib solution quickshot --student a1 --key course.key": r"30 of 30 points",
+    "dhlib grade handed-in --key course.key --out week-3-marks": r"week-3-marks",
+    "pytest --dh-key course.key --dh-grade handed-in/quickshot-a1.ipynb": r"30 of 30 points",
+}
 
 
 @pytest.fixture
@@ -64,11 +72,12 @@ def run(command: str, folder: Path) -> tuple[int, str]:
 
 
 def test_every_command_of_the_page_is_tested(page: str) -> None:
-    assert commands_of(page) == COMMANDS.keys() | TESTED_ELSEWHERE
+    assert commands_of(page) == COMMANDS.keys() | CLOSED_COURSE.keys() | TESTED_ELSEWHERE
 
 
 def test_an_untested_command_would_be_found(page: str) -> None:
-    assert commands_of(page + "\n```sh\ndhlib conjure\n```\n") - COMMANDS.keys() == {"dhlib conjure", *TESTED_ELSEWHERE}
+    tested = COMMANDS.keys() | CLOSED_COURSE.keys()
+    assert commands_of(page + "\n```sh\ndhlib conjure\n```\n") - tested == {"dhlib conjure", *TESTED_ELSEWHERE}
 
 
 @pytest.mark.notebooks
@@ -108,3 +117,25 @@ def test_every_option_of_the_page_exists(page: str, course: Path) -> None:
     options = set(re.findall(r"^\| `(--\w+) ", page, re.MULTILINE))
     assert options
     assert all(option in usage for option in options)
+
+
+@pytest.mark.notebooks
+def test_a_closed_course_from_its_key_to_its_solutions(page: str, course: Path) -> None:
+    shutil.rmtree(course / "handed-in")
+    (course / "handed-in").mkdir()
+    (course / "roster.csv").write_text("Name;Student ID\nÄhre, Ada;a1\nBohr;b2\n", "utf-8")
+    for command, says in CLOSED_COURSE.items():
+        if command.startswith("dhlib grade"):  # the one has solved it, the other hands in what is public
+            shutil.copy(course / "quickshot-a1-solution.ipynb", course / "handed-in" / "quickshot-a1.ipynb")
+            shutil.copy(course / "week-3" / "quickshot-b2.ipynb", course / "handed-in")
+            shutil.copy(course / "solutions" / "quickshot.ipynb", course / "handed-in" / "public.ipynb")
+        code, output = run(command, course)
+        assert code == (1 if command.startswith("dhlib grade") else 0), output
+        assert re.search(says, output), output
+    with (course / "week-3-marks" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
+        rows = {Path(row["notebook"]).stem: row for row in csv.DictReader(file)}
+    assert {name: (row["status"], row["points"] or "0") for name, row in rows.items()} == {
+        "quickshot-a1": ("graded", "30"),
+        "quickshot-b2": ("graded", "0"),
+        "public": ("unreadable", "0"),
+    }
