@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import time
 import uuid
 from pathlib import Path
 
@@ -16,6 +17,8 @@ ROOT = Path("/sys/fs/cgroup")
 #: What the server itself takes, in bytes and processes.
 SERVER_MEMORY = 512 << 20
 SERVER_PROCESSES = 16
+#: How long the kernel may take to see that they have ended.
+REMOVE_SECONDS = 5.0
 
 
 class ControlGroup:
@@ -30,7 +33,7 @@ class ControlGroup:
         memory, processes = limits.memory + SERVER_MEMORY, limits.processes + SERVER_PROCESSES
         self.folders: list[Path] = []
         own = _own_groups()
-        name = f"dhlib-{uuid.uuid4().hex[:12]}"
+        name = f"dhlib-{os.getpid()}-{uuid.uuid4().hex[:8]}"
         if "" in own and not ROOT.joinpath("memory").is_dir():
             self.memory = self.processes = self._make(
                 ROOT / own[""].lstrip("/") / name, {"memory.max": memory, "pids.max": processes}
@@ -45,6 +48,7 @@ class ControlGroup:
 
     def _make(self, folder: Path, values: dict[str, int]) -> bool:
         """Make a group with limits; False if that is not ours to do."""
+        _remove_left(folder.parent)
         try:
             folder.mkdir()
         except OSError:
@@ -65,11 +69,25 @@ class ControlGroup:
         return [str(folder / "cgroup.procs") for folder in self.folders]
 
     def close(self) -> None:
-        """Remove the group; its processes have ended."""
+        """Remove the group; its processes have ended, or are about to."""
+        deadline = time.monotonic() + REMOVE_SECONDS
         for folder in self.folders:
-            with contextlib.suppress(OSError):
-                folder.rmdir()
+            while folder.exists():
+                try:
+                    folder.rmdir()
+                except OSError:
+                    if time.monotonic() > deadline:
+                        break
+                    time.sleep(0.01)
         self.folders = []
+
+
+def _remove_left(parent: Path) -> None:
+    """Remove groups of graders that were killed before they could."""
+    for left in parent.glob("dhlib-*-*"):
+        if not Path("/proc", left.name.split("-")[1]).exists():
+            with contextlib.suppress(OSError):
+                left.rmdir()
 
 
 def _own_groups() -> dict[str, str]:

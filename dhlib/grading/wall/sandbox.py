@@ -206,10 +206,12 @@ class Box:
 
     def close(self) -> None:
         """End it."""
-        self.control.close()
-        self.process.kill()  # bubblewrap; what is behind the wall ends with it
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self.process.wait(5.0)
+        self.control.close()  # which ends the server, and with it all that is behind the wall
+        try:
+            self.process.wait(END_SECONDS)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
         self.group.close()
 
 

@@ -1,0 +1,107 @@
+"""The box itself: what is seen in it, how it starts anew, and what holds where a machine has less to offer."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from dhlib.errors import DHError
+from dhlib.grading.notebook import Cell
+from dhlib.grading.wall import Limits, Sandbox, outer, sandbox, view
+from dhlib.grading.wall.sandbox import STARVED, descendants
+
+REQUESTS = {"A": {"form": "numbers", "shape": []}}
+
+
+def cells(source):
+    return [Cell(source, role="answer", part="A"), Cell("", role="check", part="A")]
+
+
+def value(outcome):
+    return outcome.readings["A"].get("values", outcome.readings["A"])
+
+
+@pytest.mark.sandbox
+def test_a_box_that_was_killed_starts_anew(walls):
+    assert value(walls.run(cells("A = 1"), REQUESTS)) == [1.0]
+    server = descendants(walls._box.process.pid)[1]
+    os.kill(server, signal.SIGKILL)
+    assert value(walls.run(cells("A = 2"), REQUESTS)) == [2.0]
+    assert server not in descendants(walls._box.process.pid)
+
+
+@pytest.mark.sandbox
+def test_nothing_is_left_when_a_sandbox_is_closed():
+    with Sandbox() as sandbox_:
+        sandbox_.run(cells("A = 1"), REQUESTS)
+        pids, folders = descendants(sandbox_._box.process.pid), sandbox_._box.group.folders
+    for _ in range(100):
+        if not any(os.path.exists(f"/proc/{pid}") for pid in pids):
+            break
+        time.sleep(0.1)
+    assert not any(os.path.exists(f"/proc/{pid}") for pid in pids)
+    assert not any(folder.exists() for folder in folders)
+
+
+@pytest.mark.sandbox
+def test_the_sum_of_memory_is_watched_where_no_control_group_does(walls, monkeypatch):
+    monkeypatch.setattr(sandbox.ControlGroup, "_make", lambda *_: False)
+    greedy = (
+        "import os, time\nfor _ in range(8):\n    if os.fork() == 0:\n"
+        "        kept = bytearray(b'x' * 120_000_000); time.sleep(60); os._exit(0)\ntime.sleep(60)\nA = 1"
+    )
+    with Sandbox(Limits(60.0, 120.0, memory=256 << 20)) as sandbox_:
+        assert sandbox_.run(cells(greedy), REQUESTS).note == STARVED
+        assert value(sandbox_.run(cells("A = 1"), REQUESTS)) == [1.0]
+
+
+@pytest.mark.sandbox
+def test_who_has_not_the_rights_of_root_has_the_same_walls(walls):
+    """Walls are then built by way of a user namespace, as for any user."""
+    command = [sys.executable, "-m", "dhlib.cli", "grade", "--doctor"]
+    if os.geteuid() == 0:
+        if not shutil.which("setpriv"):
+            pytest.skip("no setpriv")
+        command = ["setpriv", "--bounding-set", "-sys_admin", *command]
+        code = "from dhlib.grading.wall.outer import find_outer; print(find_outer().user)"
+        said = subprocess.run([*command[:4], "-c", code], capture_output=True, text=True, check=True)
+        assert said.stdout.strip() == "0"
+    said = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert said.returncode == 0, said.stdout + said.stderr
+    assert "✘" not in said.stdout
+
+
+def test_what_says_what_is_right_is_not_in_view(tmp_path, monkeypatch):
+    package = tmp_path / "site-packages" / "dhlib"
+    (package / "_exercises").mkdir(parents=True)
+    (package / "__init__.py").touch()
+    monkeypatch.setattr(view.dhlib, "__file__", str(package / "__init__.py"))
+    monkeypatch.syspath_prepend(str(package.parent))
+    seen = view.view()
+    assert {str(package / "_exercises"), f"{view.LIBRARY}/_exercises"} <= set(seen.emptied)
+    shown = [source for source, _ in seen.shown]
+    assert not any(str(path).startswith(os.path.expanduser("~") + "/.ssh") for path in shown)
+    assert os.getcwd() not in shown
+    assert "/" not in shown
+
+
+@pytest.mark.parametrize("problem", ["missing", "blocked"])
+def test_a_machine_where_no_wall_can_be_built_refuses(monkeypatch, tmp_path, problem):
+    if problem == "blocked":
+        (tmp_path / "bwrap").write_text("#!/bin/sh\necho 'bwrap: No permissions to create new namespace' >&2; exit 1\n")
+        (tmp_path / "bwrap").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    outer.find_outer.cache_clear()
+    try:
+        with pytest.raises(DHError, match="need a sandbox") as refused:
+            Sandbox()
+    finally:
+        monkeypatch.undo()
+        outer.find_outer.cache_clear()
+    words = "is not installed" if problem == "missing" else "No permissions to create new namespace"
+    assert words in str(refused.value)
+    assert "--unsafe-no-sandbox" in str(refused.value)
