@@ -32,7 +32,7 @@ STYLE = """
   .book-title h1 { font-size: 34pt; margin: 0; }
   h1 { font-size: 21pt; } h2 { font-size: 15pt; } h3 { font-size: 12pt; }
   h1, h2, h3, h4 { break-after: avoid; }
-  pre { white-space: pre-wrap; font-size: 8.5pt; orphans: 5; widows: 5; }
+  pre { white-space: pre-wrap; font-size: 8.5pt; break-inside: auto; orphans: 5; widows: 5; }
   .cell { break-inside: auto; }
   .cell :is(div, pre) { overflow: visible !important; }
   div.math { overflow: visible; justify-content: center; }
