@@ -6,7 +6,7 @@ dependencies and atheris:
     python tests/sandbox/fuzz.py notebooks CORPUS_FOLDER -max_total_time=3600
     python tests/sandbox/fuzz.py answers CORPUS_FOLDER -max_total_time=3600
 
-What it finds goes into ``tests/sandbox/found`` and so into the suite.
+The shortest of what it finds goes into ``tests/sandbox/found.json`` and so into the suite.
 """
 
 from __future__ import annotations
