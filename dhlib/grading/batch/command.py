@@ -6,11 +6,16 @@ import argparse
 import os
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dhlib.errors import DHError
 from dhlib.grading.batch.problems import PROBLEMS, write_problems
 from dhlib.grading.batch.run import Shard, Summary
+
+if TYPE_CHECKING:
+    from dhlib.grading.batch.cluster import Cluster
+    from dhlib.grading.batch.pool import Pool
+    from dhlib.grading.batch.work import Settings
 
 DESCRIPTION = """\
 Grade what a class handed in: put the answers of each notebook into the pristine exercise, run it in a box, mark the
@@ -52,6 +57,12 @@ def add_grade(commands: Any) -> None:
     parser.add_argument(
         "--shard", type=shard, metavar="I/N", help="only share I of N; `dhlib merge` brings them together"
     )
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="grade on a cluster of dask.distributed: tls://HOST:PORT"
+    )
+    parser.add_argument("--tls-ca", type=Path, metavar="FILE", help="certificate of the authority of the cluster")
+    parser.add_argument("--tls-cert", type=Path, metavar="FILE", help="your certificate for the cluster")
+    parser.add_argument("--tls-key", type=Path, metavar="FILE", help="its private key")
     parser.add_argument("--pseudonyms", action="store_true", help="print no names, and send none to a cluster")
     add_walls(parser)
     parser.set_defaults(run=grade)
@@ -80,7 +91,6 @@ class Doctor(argparse.Action):
 
 def grade(options: argparse.Namespace) -> int:
     """Grade, write and sum up."""
-    from dhlib.grading.batch.pool import Pool
     from dhlib.grading.batch.run import grade_class
     from dhlib.grading.batch.store import Store
     from dhlib.grading.batch.work import Settings
@@ -107,7 +117,7 @@ def grade(options: argparse.Namespace) -> int:
         key=read_key(options.key) if options.key else None,
     )
     try:
-        with Pool(settings, options.workers or cores()) as workers:
+        with workers_of(options, settings) as workers:
             summary = grade_class(
                 options.sources,
                 options.out,
@@ -131,6 +141,20 @@ def grade(options: argparse.Namespace) -> int:
         write_problems(store, options.out / PROBLEMS)
     print(f"Grades: {written.grades}")
     return 0 if set(summary.status) <= {"graded"} else 1
+
+
+def workers_of(options: argparse.Namespace, settings: Settings) -> Pool | Cluster:
+    """Who grades: processes here, or a cluster."""
+    from dhlib.grading.batch.pool import Pool
+
+    if not options.scheduler:
+        return Pool(settings, options.workers or cores())
+    from dhlib.grading.batch.cluster import Certificates, Cluster
+
+    for path in (options.tls_ca, options.tls_cert, options.tls_key):
+        if path is not None and not path.is_file():
+            raise DHError(f"there is no file {path}.")
+    return Cluster(settings, options.scheduler, Certificates(options.tls_ca, options.tls_cert, options.tls_key))
 
 
 def in_words(summary: Summary) -> str:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-import platform
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC
-from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
@@ -21,6 +18,7 @@ from dhlib.grading.batch.progress import Progress
 from dhlib.grading.batch.rows import Certainty, Grounds, Submission
 from dhlib.grading.batch.store import FILE, Store, now
 from dhlib.grading.batch.trees import Reader
+from dhlib.grading.batch.versions import versions
 from dhlib.grading.batch.work import Graded, Settings, Work
 from dhlib.grading.grade import FAILED, GRADED
 
@@ -255,16 +253,3 @@ def _share(intake: Intake, shard: Shard | None) -> Intake:
     first = shard.index % shard.count == 1 % shard.count
     found = [handed_in for handed_in in intake.found if shard.takes(handed_in.origin.place)]
     return Intake(found, intake.problems if first else [])
-
-
-@cache
-def versions() -> dict[str, Any]:
-    """What marks depend on, beside the exercise."""
-    return {"python": platform.python_version(), **{name: _version(name) for name in ("dhlib", "numpy", "sympy")}}
-
-
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "unknown"
