@@ -21,12 +21,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 if all went well, 1 if a notebook could not be graded, 2 if the command itself was wrong.
     """
     from dhlib.grading.batch.command import add_grade
+    from dhlib.grading.batch.merge import add_merge
     from dhlib.grading.course.commands import add_course
     from dhlib.grading.reports.commands import add_reports
 
     parser = argparse.ArgumentParser(prog="dhlib", description="The DH book's library on the command line.")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     add_grade(commands)
+    add_merge(commands)
     add_course(commands)
     add_reports(commands)
     options = parser.parse_args(arguments)

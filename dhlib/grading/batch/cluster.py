@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import importlib
 import ipaddress
 import threading
 import time
@@ -67,6 +68,7 @@ class Cluster:
         if settings.unsafe:
             raise DHError("--unsafe-no-sandbox is for this machine only: a cluster runs notebooks in their boxes.")
         check_address(scheduler)
+        distributed()
         self._settings, self._scheduler = settings, scheduler
         self._certificates = certificates or Certificates()
         self._grader = Grader(settings)
@@ -85,12 +87,10 @@ class Cluster:
         DHError
             If the scheduler is not there, has no workers, or they cannot run a box.
         """
-        from distributed import as_completed
-
         with self._client() as client, _tries(client):
             source = iter(works)
             under_way: dict[str, tuple[Prepared, float]] = {}
-            futures = as_completed()
+            futures = distributed().as_completed(loop=client.loop)
             try:
                 yield from self._feed(client, source, futures, under_way)
                 for future in futures:
@@ -99,7 +99,7 @@ class Cluster:
                     future.release()
                     yield from self._feed(client, source, futures, under_way)
             finally:
-                client.cancel([future for future in futures.futures])
+                client.cancel(list(futures.futures))
 
     def _feed(
         self, client: Any, source: Iterator[Work], futures: Any, under_way: dict[str, tuple[Prepared, float]]
@@ -125,13 +125,12 @@ class Cluster:
             futures.add(client.submit(run_in_box, job_of(prepared, self._settings.limits), key=key, pure=False))
 
     def _finish(self, prepared: Prepared, future: Any, since: float) -> Graded:
-        from distributed.scheduler import KilledWorker
-
+        killed = distributed().scheduler.KilledWorker
         number = prepared.work.number
         try:
             outcome = Outcome(**future.result())
             return self._grader.finish(prepared, outcome, round(time.monotonic() - since, 3))
-        except KilledWorker:
+        except killed:
             return failed(number, f"The workers that graded it ended, {TRIES} times. Please report this.")
         except DHError as error:
             raise DHError(f"a worker of the cluster cannot grade: {error}") from None
@@ -139,11 +138,6 @@ class Cluster:
             return failed(number, broken(error))
 
     def _client(self) -> Any:
-        try:
-            from distributed import Client
-            from distributed.security import Security
-        except ImportError:
-            raise DHError("--scheduler needs `distributed`: pip install 'dhlib[cluster]'.") from None
         options: dict[str, Any] = {}
         if self._scheduler.startswith("tls:"):
             files = {
@@ -155,9 +149,11 @@ class Cluster:
                 )
                 if path is not None
             }
-            options["security"] = Security(require_encryption=True, **files)
+            options["security"] = distributed().Security(require_encryption=True, **files)
         try:
-            client = Client(self._scheduler, timeout=PATIENCE, name="dhlib", set_as_default=False, **options)
+            client = distributed().Client(
+                self._scheduler, timeout=PATIENCE, name="dhlib", set_as_default=False, **options
+            )
         except (OSError, TimeoutError, ValueError, TypeError) as error:
             raise DHError(
                 f"the scheduler {self._scheduler} does not answer: {error or type(error).__name__}."
@@ -168,6 +164,14 @@ class Cluster:
             client.close()
             raise DHError(f"the scheduler {self._scheduler} has no workers; start some with `dask worker`.") from None
         return client
+
+
+def distributed() -> Any:
+    """The engine, which is an extra; raises DHError if it is not installed."""
+    try:
+        return importlib.import_module("distributed")
+    except ImportError:
+        raise DHError("--scheduler needs `distributed`: pip install 'dhlib[cluster]'.") from None
 
 
 def check_address(scheduler: str) -> None:

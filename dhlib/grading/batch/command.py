@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dhlib.errors import DHError
-from dhlib.grading.batch.problems import PROBLEMS, write_problems
+from dhlib.grading.batch.after import write_views
 from dhlib.grading.batch.run import Shard, Summary
 
 if TYPE_CHECKING:
@@ -97,7 +97,6 @@ def grade(options: argparse.Namespace) -> int:
     from dhlib.grading.course.keys import read_key
     from dhlib.grading.exercise import find_exercise
     from dhlib.grading.reports.settings import change_settings
-    from dhlib.grading.reports.write import write_reports
     from dhlib.grading.wall import Limits
     from dhlib.grading.wall.limits import UNSAFE
 
@@ -137,9 +136,7 @@ def grade(options: argparse.Namespace) -> int:
             pseudonyms=options.pseudonyms or None,
             exercises=str(options.exercises.resolve()) if options.exercises else None,
         )
-        written = write_reports(store)
-        write_problems(store, options.out / PROBLEMS)
-    print(f"Grades: {written.grades}")
+        print(f"Grades: {write_views(store)}")
     return 0 if set(summary.status) <= {"graded"} else 1
 
 
