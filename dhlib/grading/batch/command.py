@@ -43,6 +43,10 @@ def add_grade(commands: Any) -> None:
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where results go")
     parser.add_argument("--exercise", default="", metavar="NAME", help="which exercise it is, if notebooks do not say")
     parser.add_argument("--exercises", type=Path, metavar="DIR", help="where to look for exercises first")
+    parser.add_argument("--roster", type=Path, metavar="CSV", help="class list, which says who is who")
+    parser.add_argument(
+        "--column", default="", metavar="HEADING", help="of the IDs in the class list, if it is unusual"
+    )
     parser.add_argument("--key", type=Path, metavar="FILE", help="of the course, for notebooks that were assigned")
     parser.add_argument("--timeout", type=positive, default=60.0, metavar="S", help="seconds for a notebook (60)")
     parser.add_argument("--workers", type=count, metavar="N", help="notebooks at a time (one for each core)")
@@ -91,6 +95,7 @@ class Doctor(argparse.Action):
 
 def grade(options: argparse.Namespace) -> int:
     """Grade, write and sum up."""
+    from dhlib.grading.batch.people import People
     from dhlib.grading.batch.run import grade_class
     from dhlib.grading.batch.store import Store
     from dhlib.grading.batch.work import Settings
@@ -115,6 +120,7 @@ def grade(options: argparse.Namespace) -> int:
         unsafe=options.unsafe,
         key=read_key(options.key) if options.key else None,
     )
+    people = People(options.roster, options.column) if options.roster else None
     try:
         with workers_of(options, settings) as workers:
             summary = grade_class(
@@ -123,6 +129,7 @@ def grade(options: argparse.Namespace) -> int:
                 settings,
                 workers,
                 regrade=options.regrade,
+                roster=people.find if people else None,
                 shard=options.shard,
                 quiet=options.pseudonyms,
             )
@@ -131,6 +138,10 @@ def grade(options: argparse.Namespace) -> int:
         return 130
     print(in_words(summary))
     with Store(options.out) as store:
+        if people is not None and options.shard is None:
+            here = {student.student for student in store.students()}
+            missing = sum(person.id not in here for person in people.people)
+            print(f"{missing} of the {len(people.people)} on the roster handed nothing in.")
         change_settings(
             store,
             pseudonyms=options.pseudonyms or None,
@@ -161,7 +172,7 @@ def in_words(summary: Summary) -> str:
     if others:
         lines.append(f"Look at: {', '.join(others)}.")
     if summary.problems:
-        lines.append(f"{summary.problems} things to look at: see problems.csv.")
+        lines.append(f"{summary.problems} more to look at: problems.csv lists them.")
     return "\n".join(lines)
 
 

@@ -51,7 +51,7 @@ def read_roster(path: str | Path, column: str = "") -> list[str]:
     ['a1', 'b2']
     """
     path = Path(path)
-    rows = _rows(path)
+    rows = read_rows(path)
     if not rows:
         raise DHError(f"{path} is empty; its first row should hold the headings, such as id and name.")
     (_, headings), *students = rows
@@ -84,7 +84,7 @@ def read_roster(path: str | Path, column: str = "") -> list[str]:
     return ids
 
 
-def _rows(path: Path) -> list[tuple[int, list[str]]]:
+def read_rows(path: Path) -> list[tuple[int, list[str]]]:
     """The rows that are not blank, each with the number of its last line."""
     text = _text(path)
     lines = text.split("\n", 1)
