@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,9 +29,22 @@ COMMANDS = {
     "pytest --nbval-lax solutions/quickshot.ipynb": Outcome(0, r"passed"),
     "pytest --dh-grade solutions/quickshot.ipynb": Outcome(0, r"30 of 30 points"),
     "dhlib grade handed-in --out marks": Outcome(0, r"marks/grades\.csv"),
+    "dhlib grade moodle.zip --out from-moodle --roster roster.csv": Outcome(0, r"1 of the 2 on the roster"),
+    "dhlib grade handed-in --out marks --regrade": Outcome(0, r"marks/grades\.csv"),
 }
+#: Run one after the other, by a test of their own.
+SHARES = [
+    "dhlib grade handed-in --out share-1 --shard 1/2",
+    "dhlib grade handed-in --out share-2 --shard 2/2",
+    "dhlib merge share-1 share-2 --out together",
+]
+#: Needs certificates; tests/sandbox/test_cluster.py has a scheduler with TLS, and a test below reads the options.
+CLUSTER = (
+    "dhlib grade handed-in --out marks --scheduler tls://cluster.example:8786 "
+    "--tls-ca ca.pem --tls-cert me.pem --tls-key me.key"
+)
 #: Run elsewhere: by tests of their own, and by whoever builds the book.
-TESTED_ELSEWHERE = {"make book EDITION=course"}
+TESTED_ELSEWHERE = {"make book EDITION=course", CLUSTER, *SHARES}
 #: One after the other, in a folder of their own.
 CLOSED_COURSE = {
     "dhlib key course.key": r"out of git",
@@ -54,6 +68,11 @@ def course(root: Path, tmp_path: Path) -> Path:
     (tmp_path / "handed-in" / "group").mkdir(parents=True)
     shutil.copy(root / "solutions" / "quickshot.ipynb", tmp_path / "handed-in" / "solved.ipynb")
     shutil.copy(root / "exercises" / "quickshot.ipynb", tmp_path / "handed-in" / "group" / "open.ipynb")
+    with zipfile.ZipFile(tmp_path / "moodle.zip", "w") as archive:
+        archive.write(
+            root / "exercises" / "quickshot.ipynb", "Ada Lovelace_1815_assignsubmission_file_/quickshot.ipynb"
+        )
+    (tmp_path / "roster.csv").write_text("id,name\ns1,Ada Lovelace\ns2,Bob\n", "utf-8")
     return tmp_path
 
 
@@ -101,6 +120,21 @@ def test_a_class_gets_the_table_and_the_pages_that_are_described(page: str, cour
     assert rows["group/open.ipynb"]["points"] == "0"
     for row in rows.values():
         assert (course / "marks" / row["feedback"]).is_file()
+
+
+@pytest.mark.notebooks
+def test_shares_come_together(course: Path) -> None:
+    for command in SHARES:
+        code, output = run(command, course)
+        assert code == 0, output
+    with (course / "together" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
+        assert {row["notebook"] for row in csv.DictReader(file)} == {"solved.ipynb", "group/open.ipynb"}
+
+
+def test_the_command_for_a_cluster_is_understood(course: Path) -> None:
+    code, output = run(CLUSTER, course)
+    assert code == 2
+    assert "there is no file ca.pem" in output
 
 
 @pytest.mark.notebooks

@@ -44,7 +44,9 @@ def notebook(first, second):
     cells = [
         ("setup", "", "import numpy as np"),
         ("answer", "p", f"p = {first}"),
+        ("check", "p", 'check("p", p)'),
         ("answer", "q", f"q = {second}"),
+        ("check", "q", 'check("q", q)'),
     ]
     return json.dumps(
         {
