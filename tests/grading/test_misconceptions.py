@@ -1,13 +1,16 @@
 """Every misconception that shows in a part is caught there, and named."""
 
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from dhlib import Chain, robots
+from dhlib.grading.course.variants import Variants
 from dhlib.grading.diagnosis import Case, Tally, as_row, cases, other_chains, read, wrong_readings
 from dhlib.grading.forms import Choice, Valued
+from dhlib.grading.marking import mark
 from dhlib.grading.marks import Mark
 from dhlib.grading.misconceptions import KNOWN
 from dhlib.grading.sections import CHAPTERS
@@ -29,6 +32,21 @@ def test_every_misconception_is_named_and_every_right_answer_known(every, result
     assert tally.wrong > 2 * len([part for part in every.parts if not isinstance(part.asks, Choice)])
     assert tally.right > 3 * len(every.parts)
     assert as_row(tally) == FIGURES[every.name], "run make diagnosis"
+
+
+@pytest.mark.parametrize("name", ["pa10_6c", "pa10_7c", "puma560", "quickshot", "scara", "stanford"])
+def test_misconceptions_are_named_with_a_students_own_numbers_too(name):
+    """By value, since that is what other numbers change: none passes, and as many are told exactly."""
+    variants = Variants(name, ROOT / "exercises")
+    for student in [f"student {k}" for k in range(20 if os.environ.get("DHBOOK_FULL") else 1)]:
+        tally = Tally()
+        for part in variants.of(bytes(range(32)), student).exercise.parts:
+            if isinstance(part.asks, Valued):
+                for keys, reading in wrong_readings(part):
+                    case = Case(part, "", keys, mark(part, reading))
+                    assert case.how != "accepted", (keys, str(case.mark))
+                    setattr(tally, case.how, getattr(tally, case.how) + 1)
+        assert tally.share >= NAMED, str(tally)
 
 
 def test_the_figures_add_up():
@@ -55,8 +73,8 @@ def test_the_figures_add_up():
 )
 def test_a_tally_counts_what_it_says(exercise, keys, verdict, misconception, how):
     """Negative control: an answer that passes though it is wrong would be counted, and so would a right one refused."""
-    mark = Mark("A1", 0, 1, verdict, "", misconception)
-    assert Case(exercise.part("A1"), "", frozenset(keys), mark).how == how
+    marked = Mark("A1", 0, 1, verdict, "", misconception)
+    assert Case(exercise.part("A1"), "", frozenset(keys), marked).how == how
 
 
 def test_other_tables_of_an_arm_are_that_arm():
