@@ -17,13 +17,10 @@ from pathlib import Path
 
 from dhlib.errors import DHError
 from dhlib.grading.wall.inner import HOME, NOBODY
-from dhlib.grading.wall.limits import MIB
 from dhlib.grading.wall.view import DEVICES, View, view
 
 SERVER = "dhlib.grading.wall.server"
 PROBE_SECONDS = 30.0
-#: Files of the server itself, such as the cache of matplotlib.
-SERVER_DISK = 64 * MIB
 
 WITHOUT = "--unsafe-no-sandbox grades without it, which is for your own notebooks only."
 REMEDY = (
@@ -85,7 +82,7 @@ def bubblewrap(seen: View, root: bool) -> list[str]:
     words += ["--die-with-parent", "--new-session", "--as-pid-1", "--hostname", "box", "--clearenv"]
     for name, value in environment().items():
         words += ["--setenv", name, value]
-    words += ["--size", str(SERVER_DISK), "--perms", "1777", "--tmpfs", HOME]
+    words += ["--perms", "1777", "--tmpfs", HOME]  # of the server; no notebook sees it
     for folder in sorted({str(parent) for _, place in seen.shown for parent in Path(place).parents} - {"/"} | {"/dev"}):
         words += ["--perms", "0755", "--dir", folder]
     for name in DEVICES:
@@ -93,7 +90,7 @@ def bubblewrap(seen: View, root: bool) -> list[str]:
     for source, place in seen.shown:
         words += ["--ro-bind", source, place]
     for place in seen.emptied:
-        words += ["--size", "4096", "--tmpfs", place, "--remount-ro", place]
+        words += ["--tmpfs", place, "--remount-ro", place]
     return [*words, "--proc", "/proc", "--remount-ro", "/", "--chdir", HOME, "--"]
 
 
