@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -53,6 +54,38 @@ CLOSED_COURSE = {
     "dhlib grade handed-in --key course.key --out week-3-marks": r"week-3-marks",
     "pytest --dh-key course.key --dh-grade handed-in/quickshot-a1.ipynb": r"30 of 30 points",
 }
+#: What follows once a class is graded: each is run on results of its own.
+AFTERWARDS = {
+    "dhlib report marks --book https://example.org/dh": Outcome(0, r"marks/class\.html"),
+    "dhlib export marks --format moodle": Outcome(0, r"marks/exports/moodle-feedback\.zip"),
+    "dhlib export marks --format canvas": Outcome(0, r"marks/exports/canvas-comments\.zip"),
+    "dhlib export marks --format moodle --worksheet worksheet.csv": Outcome(0, r"marks/exports/moodle-grades\.csv"),
+    "dhlib export --format gradescope-autograder --exercise quickshot --out elsewhere": Outcome(
+        0, r"elsewhere/gradescope-autograder\.zip"
+    ),
+    "dhlib export --format github-classroom --exercise quickshot --out elsewhere": Outcome(0, r"elsewhere"),
+    'dhlib adjust marks --student "Ada Lovelace" --part A1 --points 0.5 --reason "Right, but for a slip of ours."': (
+        Outcome(0, r"A1 has 0\.5 points")
+    ),
+    'dhlib adjust marks --student "Ada Lovelace" --bonus 1 --reason "Found an erratum."': Outcome(0, r"\+1 points"),
+    "dhlib adjust marks --list": Outcome(0, r"adjustment 1 "),
+    "dhlib adjust marks --revoke 1": Outcome(0, r"holds no longer"),
+    "dhlib report marks --audit": Outcome(0, r"adjusted  .*Seen in class"),
+    'dhlib adjust marks --due "2030-01-31 23:59" --late "10%/day, max 50%" --grace 15min': Outcome(0, r"10 % of all"),
+    'dhlib adjust marks --student "Ada Lovelace" --due "2030-02-07 23:59" --reason "Was ill."': Outcome(0, r"due 2030"),
+    "dhlib report marks --pseudonyms": Outcome(0, r"marks/grades\.csv"),
+    'dhlib forget marks "Ada Lovelace" --yes': Outcome(0, r"Removed: 1 submission"),
+}
+GRADED_FROM_MOODLE = {"dhlib grade moodle.zip --out marks": Outcome(0, r"marks/grades\.csv")}
+SEEN = '--student "Ada Lovelace" --part slip --points 1 --reason "Seen in class."'
+EVERY = COMMANDS.keys() | CLOSED_COURSE.keys() | GRADED_FROM_MOODLE.keys() | AFTERWARDS.keys()
+#: What Moodle and Canvas call what they give: Moodle a folder, Canvas a file.
+FROM_MOODLE = "Ada Lovelace_4711_assignsubmission_file_/quickshot.ipynb"
+FROM_CANVAS = "boolegeorge_77_901_quickshot.ipynb"
+WORKSHEET = """\
+Identifier,Full name,Status,Grade,Maximum Grade,Last modified (grade),Feedback comments
+Participant 4711,Ada Lovelace,Submitted for grading,,100,-,
+"""
 
 
 @pytest.fixture
@@ -77,26 +110,25 @@ def course(root: Path, tmp_path: Path) -> Path:
 
 
 def commands_of(text: str) -> set[str]:
-    blocks = re.findall(r"^```sh\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
-    return {line for block in blocks for line in block.splitlines() if line}
+    blocks = re.findall(r"^ *```sh\n(.*?)^ *```", text, re.DOTALL | re.MULTILINE)
+    return {line.strip() for block in blocks for line in block.splitlines() if line.strip()}
 
 
 def run(command: str, folder: Path) -> tuple[int, str]:
     tools = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     inherited = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "COV_"))}
     done = subprocess.run(
-        command.split(), cwd=folder, env={**inherited, "PATH": tools}, capture_output=True, text=True, timeout=300
+        shlex.split(command), cwd=folder, env={**inherited, "PATH": tools}, capture_output=True, text=True, timeout=300
     )
     return done.returncode, done.stdout + done.stderr
 
 
 def test_every_command_of_the_page_is_tested(page: str) -> None:
-    assert commands_of(page) == COMMANDS.keys() | CLOSED_COURSE.keys() | TESTED_ELSEWHERE
+    assert commands_of(page) == EVERY | TESTED_ELSEWHERE
 
 
 def test_an_untested_command_would_be_found(page: str) -> None:
-    tested = COMMANDS.keys() | CLOSED_COURSE.keys()
-    assert commands_of(page + "\n```sh\ndhlib conjure\n```\n") - tested == {"dhlib conjure", *TESTED_ELSEWHERE}
+    assert commands_of(page + "\n```sh\ndhlib conjure\n```\n") - EVERY == {"dhlib conjure", *TESTED_ELSEWHERE}
 
 
 @pytest.mark.notebooks
@@ -105,6 +137,62 @@ def test_the_command_does_what_the_page_says(command: str, course: Path) -> None
     code, output = run(command, course)
     assert code == COMMANDS[command].code, output
     assert re.search(COMMANDS[command].says, output), output
+
+
+@pytest.fixture(scope="session")
+def graded_once(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a download from Moodle, graded, and something decided by hand."""
+    folder = tmp_path_factory.mktemp("graded")
+    shutil.copytree(root / "exercises", folder / "exercises", ignore=shutil.ignore_patterns("__pycache__"))
+    with zipfile.ZipFile(folder / "moodle.zip", "w") as archive:
+        archive.write(root / "solutions" / "quickshot.ipynb", FROM_MOODLE)
+    (folder / "canvas").mkdir()
+    shutil.copy(root / "exercises" / "quickshot.ipynb", folder / "canvas" / FROM_CANVAS)
+    (folder / "worksheet.csv").write_text(WORKSHEET, "utf-8")
+    for command in ("dhlib grade moodle.zip canvas --out marks", f"dhlib adjust marks {SEEN}"):
+        code, output = run(command, folder)
+        assert code == 0, output
+    return folder
+
+
+@pytest.fixture
+def graded(graded_once: Path, tmp_path: Path) -> Path:
+    """A copy of that folder, to be changed."""
+    return Path(shutil.copytree(graded_once, tmp_path / "copy"))
+
+
+@pytest.mark.notebooks
+@pytest.mark.parametrize("command", AFTERWARDS)
+def test_what_follows_does_what_the_page_says(command: str, graded: Path) -> None:
+    code, output = run(command, graded)
+    assert code == AFTERWARDS[command].code, output
+    assert re.search(AFTERWARDS[command].says, output), output
+
+
+@pytest.mark.notebooks
+def test_from_adopting_to_the_gradebook(page: str, graded: Path) -> None:
+    walk = page[page.index("(sec-instructors-walk)=") :]
+    walk = walk[: walk.index("\n(sec-", 1)]
+    shutil.rmtree(graded / "marks")
+    commands = re.findall(r"^ +(dhlib .*)$", walk, re.MULTILINE)
+    assert len(commands) == 3
+    for command in commands:
+        code, output = run(command, graded)
+        assert code == 0, output
+    with (graded / "marks/exports/moodle-grades.csv").open(encoding="utf-8", newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert (row["Identifier"], row["Full name"], row["Grade"]) == ("Participant 4711", "Ada Lovelace", "30")
+    with zipfile.ZipFile(graded / "marks/exports/moodle-feedback.zip") as archive:
+        (name,) = archive.namelist()
+        assert name.startswith(FROM_MOODLE.split("/")[0] + "/")
+        assert "https://example.org/dh" not in archive.read(name).decode()  # all is right: nothing to read up
+        assert "30 of 30 points" in archive.read(name).decode()
+
+
+def test_every_format_of_the_page_exists(page: str, course: Path) -> None:
+    _, usage = run("dhlib export --help", course)
+    formats = set(re.findall(r"^\| `([a-z]+)` \|", page, re.MULTILINE)) | set(re.findall(r"--format ([\w-]+)", page))
+    assert formats == set(re.findall(r"^  ([a-z]+(?:-[a-z]+)?)  +\w", usage.split("positional")[0], re.MULTILINE))
 
 
 @pytest.mark.notebooks

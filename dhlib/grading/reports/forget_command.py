@@ -41,6 +41,8 @@ def forget_student(options: argparse.Namespace) -> int:
     )
     if done.exports:
         print("The exports held them too and are deleted: make them again with dhlib export.")
+    if done.left:
+        print(f"These still hold the name, and are yours to look at: {', '.join(map(str, done.left))}.")
     print("What was handed in, backups, and what you sent elsewhere are yours to delete.")
     return 0
 

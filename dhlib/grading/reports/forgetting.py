@@ -14,13 +14,19 @@ from dhlib.errors import DHError
 from dhlib.grading.batch.store import Store
 from dhlib.grading.reports.write import CLASS, EXPORTS, FEEDBACK, GRADES, write_reports
 
+#: What `dhlib grade` writes for the instructor to look at; the next run writes it anew.
+PROBLEMS = "problems.csv"
+#: Names that are shorter stand in many a file by chance.
+SHORTEST = 4
+
 
 @dataclass(frozen=True)
 class Forgotten:
-    """What was removed."""
+    """What was removed, and which other files of the folder still hold the student."""
 
     submissions: int
     exports: bool
+    left: list[Path]
 
 
 def forget(store: Store, student: str) -> Forgotten:
@@ -65,7 +71,12 @@ def forget(store: Store, student: str) -> Forgotten:
         shutil.rmtree(exports)
     if any((folder / name).exists() for name in (GRADES, CLASS, FEEDBACK)):
         write_reports(store, only=())
-    return Forgotten(len(rows), had_exports)
+    words = [text for text in said if len(text) >= SHORTEST]
+    if folder / PROBLEMS in leftovers(folder, sorted(said)):
+        (folder / PROBLEMS).unlink()
+    ours = (store.path.name, GRADES, CLASS, FEEDBACK)
+    left = [path for path in leftovers(folder, words) if not path.relative_to(folder).parts[0].startswith(ours)]
+    return Forgotten(len(rows), had_exports, left)
 
 
 def _clean(store: Store) -> None:

@@ -249,6 +249,7 @@ def test_nothing_is_left_of_who_is_forgotten(class_of_three, capsys):
     run(class_of_three, "adjust", "--student", "zara", "--bonus", "1", "--reason", f"{secret} came by")
     run(class_of_three, "adjust", "--student", "zara", "--due", "2026-11-20T20:00+00:00", "--reason", secret)
     run(class_of_three, "export", "--format", "json")
+    (class_of_three / "problems.csv").write_text(f"where,what,students\n{secret},claimed twice,zara\n", "utf-8")
     words = [secret, "Zarathustra", "Unmistakable", "unmistakableanswer", "zara"]
     assert len(leftovers(class_of_three, words)) >= 4
     with Store(class_of_three) as reader:  # the results are open elsewhere while it happens
@@ -261,6 +262,13 @@ def test_nothing_is_left_of_who_is_forgotten(class_of_three, capsys):
         assert [problem.what for problem in store.problems()] == ["Other."]
         assert store.events()[-1].what == "forgotten"
     assert "Cleopatra" in (class_of_three / "grades.csv").read_text("utf-8-sig")
+
+
+def test_other_files_that_hold_the_name_are_listed(class_of_three, capsys):
+    (class_of_three / "notes.txt").write_text("Cleopatra VII asked about A1", "utf-8")
+    run(class_of_three, "forget", "cleo", "--yes")
+    assert "notes.txt" in capsys.readouterr().out
+    assert (class_of_three / "notes.txt").exists()
 
 
 def test_deleting_rows_alone_would_leave_traces(class_of_three):
