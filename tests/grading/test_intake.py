@@ -164,6 +164,13 @@ def test_whoever_handed_in_something_else_is_not_lost(class_):
     assert sentences(intake) == {"dora": "The folder is empty."}
 
 
+def test_whoever_wrote_a_text_in_moodle_and_handed_in_no_file_is_listed(class_):
+    folder = class_(*MOODLE, "Carl_3_assignsubmission_onlinetext_/onlinetext.html")
+    intake = collect([folder], EXERCISES)
+    assert [h.origin.student for h in intake.found] == ["1815", "42"]
+    assert list(sentences(intake).values()) == ["Carl handed in no notebook."]
+
+
 def test_links_are_not_followed(class_, tmp_path):
     folder = class_("ada/quickshot.ipynb", "bob/quickshot.ipynb")
     secret = tmp_path / "secret.ipynb"

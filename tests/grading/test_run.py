@@ -250,6 +250,15 @@ def test_a_roster_that_comes_later_renames_without_grading(hand_in, run):
     assert (submissions[0].student, submissions[0].name, submissions[0].points) == ("s1", "Ada Lovelace", 2)
 
 
+def test_names_may_stay_out_of_what_is_printed(hand_in, run, capsys):
+    hand_in("Lovelace/Ada Lovelace.ipynb", "no notebook\n")
+    run(quiet=True)
+    assert "number 1: unreadable." in (said := capsys.readouterr().err)
+    assert "Lovelace" not in said
+    run(regrade="all")
+    assert "Lovelace" in capsys.readouterr().err
+
+
 # ── shares ──
 
 

@@ -183,6 +183,10 @@ class _Source:
         if not notebooks and origin.certainty == Certainty.PLACE:
             others = [entry for entry in inside if entry.name.lower() not in BESIDE]
             chosen = sorted(others, key=lambda entry: (not _may_be_renamed(entry.name), entry.parts))[:1]
+            if not chosen and inside:
+                self.problems.append(
+                    Problem(inside[0].shown, f"{origin.name} handed in no notebook.", (origin.student,))
+                )
         elif not notebooks and len(self.tree.entries) == 1:
             chosen = list(inside)  # this very file was asked for
         elif not notebooks:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from typing import Any, TextIO
 
-#: Without a terminal a line appears after so many submissions.
-EVERY = 100
+#: Without a terminal so many lines appear in all, and none before so many submissions.
+LINES = 20
+AT_LEAST = 100
 
 
 class Progress:
@@ -61,5 +62,5 @@ class Progress:
         self._done += 1
         if self._bar is not None:
             self._bar.update()
-        elif self._done % EVERY == 0:
+        elif self._done % max(AT_LEAST, self._total // LINES) == 0:
             self.say(f"{self._done} of {self._total} notebooks")

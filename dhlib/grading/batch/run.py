@@ -146,8 +146,9 @@ class _Run:
                 self.store.add(self._submission(handed_in, sha256, graded), graded.marks)
                 self.done += 1
                 if graded.status != GRADED:
-                    where = f"submission {graded.number + 1}" if self.quiet else handed_in.source
-                    progress.say(f"{where}: {graded.status}. {graded.message}".rstrip())
+                    # the message may hold the name of the file, and that the name of the student
+                    named = f"{handed_in.source}: {graded.status}. {graded.message}".rstrip()
+                    progress.say(f"number {graded.number + 1}: {graded.status}." if self.quiet else named)
                 progress.advance()
         if self.since:
             self.store.set_meta(_SINCE, "")
