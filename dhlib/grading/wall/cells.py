@@ -22,6 +22,7 @@ import select
 import signal
 import socket
 import struct
+import sys
 import time
 from collections.abc import Sequence
 from typing import Any
@@ -33,6 +34,8 @@ GRACE = 0.5
 LONGEST_COMMAND = 1 << 20
 LONGEST_REPORT = 200
 MOST_REPORTS = 10_000
+#: How often a state tries to fork.
+FORKS = 20
 
 CREDENTIALS = struct.Struct("iII")
 
@@ -203,7 +206,7 @@ def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, an
     """A state: run the cells that the keeper names, each in a child that becomes the next state. Never returns."""
     # Names of its own for all it needs: a cell may put anything else in place of what modules hold.
     fork, wait, leave, own, group = os.fork, os.waitpid, os._exit, os.getpid, os.setpgid
-    load, dump = json.loads, json.dumps
+    load, dump, nap, threads = json.loads, json.dumps, time.sleep, sys._current_frames
 
     def report(word: str, k: int) -> None:
         channel.send(dump([word, k]).encode())
@@ -213,13 +216,22 @@ def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, an
         while data:
             data = data[os.write(answers, data) :]
 
+    def fork_soon() -> int:
+        # What was killed a moment ago may still count against the limit of processes.
+        for _ in range(FORKS):
+            try:
+                return fork()
+            except OSError:
+                nap(0.01)
+        return fork()
+
     me = own()
     try:
         while True:
             command = channel.recv(LONGEST_COMMAND)
             if own() != me or not command:  # a copy that a cell made of itself
                 leave(0)
-            child = fork()
+            child = fork_soon()
             if child:
                 asked = load(command)
                 status = wait(child, 0)[1]
@@ -240,6 +252,10 @@ def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, an
                     leave(0)
                 if error is not None:
                     answer({"cell": one, "error": error})
+            if len(threads()) > 1:  # so many that no process is left for the next cell? Then this cell is lost instead.
+                if (probe := fork_soon()) == 0:
+                    leave(0)
+                wait(probe, 0)
             report("done", k)
     except BaseException:
         leave(1)
