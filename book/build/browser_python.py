@@ -207,6 +207,18 @@ def cdn_address() -> str:
     return f"{found[1]}{pyodide_version()}{found[2]}"
 
 
+def elsewhere(name: str, here: set[str]) -> dict[str, Any]:
+    """Return the entries of a package that the book does not serve, and of what it needs, with their addresses."""
+    known, found, waiting = pyodide_lock()["packages"], {}, [name]
+    while waiting:
+        name = waiting.pop()
+        if name not in here and name not in found:
+            entry = known[name]
+            found[name] = entry | {"file_name": cdn_address() + entry["file_name"]}
+            waiting += entry["depends"]
+    return found
+
+
 def download(address: str) -> bytes | None:
     """Return what an address serves, None where it cannot be reached."""
     try:
@@ -247,7 +259,7 @@ class Distribution:
             }
             for wheel in self.wheels
         }
-        return {"info": pyodide_lock()["info"], "packages": packages}
+        return {"info": pyodide_lock()["info"], "packages": elsewhere("matplotlib", set(packages)) | packages}
 
     @property
     def edition(self) -> str:
