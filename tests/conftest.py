@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import threading
@@ -16,6 +17,10 @@ from filelock import FileLock
 from serve import server
 
 ROOT = Path(__file__).parent.parent
+
+# Copies of the book are built elsewhere, and find numpy for the browser where the book itself finds it.
+if (WHEELS := ROOT.parent / "shared" / "wasm").is_dir():
+    os.environ.setdefault("DHBOOK_WHEELS", str(WHEELS))
 
 
 @pytest.fixture(scope="session")
@@ -71,6 +76,12 @@ def questions_site(built_once: Callable[..., Path]) -> Path:
         return build_book(copy, into, environment={"PYTHONPATH": str(copy)})
 
     return built_once("questions", build)
+
+
+@pytest.fixture(scope="session")
+def copied() -> Callable[[Path], Path]:
+    """Copies what the book is built from into a folder that does not exist yet."""
+    return copy_sources
 
 
 @pytest.fixture

@@ -46,6 +46,9 @@ def unexpected(files: set[str], pages: dict[str, Path]) -> set[str]:
     static = re.compile(
         r"_static/.*\.(css|js|svg|png|woff2|LICENSE\.txt)|_images/[\w.-]+\.(svg|png)|_downloads/[0-9a-f]{32}/[\w.-]+"
         r"|live/(link|robot|place|space)\.js|icons/icon(-192\.png|-512\.png|-masked-512\.png|\.svg)"
+        r"|run/(cells|editor|exercise|progress)\.js|run/worker\.mjs|run/book\.zip|run/mathjax/[\w/]+\.js|run/lock-\w+\.json"
+        r"|run/(numpy|sympy|mpmath|dhlib)-[\w.-]+\.whl|run/pyodide-[\d.]+/(pyodide\S*\.(mjs|wasm)|python_stdlib\.zip)"
+        r"|run/exercises/\w+\.(ipynb|py)"
     )
     return {name for name in files - allowed if not static.fullmatch(name)}
 
@@ -70,6 +73,7 @@ def test_only_what_is_listed_is_published(site: Path, root: Path) -> None:
         "_sources/solutions/quickshot.ipynb",
         "_static/key.pem",
         "dhlib/x.py",
+        "run/x.py",
     ],
 )
 def test_a_stray_file_would_be_found(site: Path, root: Path, stray: str) -> None:

@@ -1,0 +1,382 @@
+"""Code that runs where it stands: each code cell of a chapter gets its buttons, and the site the Python they start.
+
+The page itself carries a script of a few kB and, as data, the sources of the cells that nobody sees and others
+need, without what only feeds the book's text. All else waits under ``run/`` until a reader presses Run or Edit.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import html
+import importlib.util
+import io
+import json
+import posixpath
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+from docutils import nodes
+from formulas import ROOT, node_program
+from notebooks import HELPER, WithoutHelper, has_notebook, names_of_helper, needed_before, unneeded, without_lines
+from sphinx.errors import ExtensionError
+from sphinx.util import logging
+from sphinx.util.docutils import SphinxDirective
+
+from dhlib.grading.exercise import load_exercise
+
+sys.path.append(str(ROOT / "book" / "build"))
+import browser_python
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+    from sphinx.config import Config
+
+logger = logging.getLogger(__name__)
+
+SOURCES = ROOT / "book" / "cells"
+STYLE = ROOT / "book" / "style" / "cells.css"
+FOLDER = "run"
+HIDDEN = {"remove-cell", "remove-input"}
+PROGRESS = "book/progress"
+HONEST = (
+    "This page carries what answers are judged by, so that your browser can check them alone. Whoever wants may look; "
+    "a course that grades hands out notebooks of its own."
+)
+#: Modules that a cell may import in the page, beside Python's own.
+IN_THE_PAGE = {"numpy", "sympy", "mpmath", "dhlib", "matplotlib", "IPython", HELPER}
+MATHJAX = ("startup.js", "core.js", "input/tex-base.js", "input/tex/extensions/ams.js", "output/svg.js")
+MATHJAX_FONT = "output/svg/fonts/tex.js"
+
+
+# What the page knows of its cells
+
+
+def page_sources(cells: list[tuple[str, bool]]) -> tuple[str, list[str]]:
+    """Return what is to be imported of the helper, and for each hidden cell what later cells need of it.
+
+    Parameters
+    ----------
+    cells : list of (str, bool)
+        The source of each cell, and whether the book hides its source.
+
+    Returns
+    -------
+    str, list of str
+        Of a cell that is seen, the source as it is; ``""`` for a hidden one that nobody needs.
+    """
+    trees = [ast.parse(source) for source, _ in cells]
+    helpers = names_of_helper(trees)
+    origins = {
+        alias.asname or alias.name: alias.name
+        for tree in trees
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module == HELPER
+        for alias in node.names
+    }
+    sources = [source for source, _ in cells]
+    needed: set[str] = set()
+    for k in reversed(range(len(cells))):
+        tree = trees[k]
+        if cells[k][1]:
+            # A function of the chapter's own that draws by the helper stays, if a cell that is seen calls it.
+            cleaner = WithoutHelper(helpers - (needed - set(origins)))
+            cleaner.visit(tree)
+            sources[k] = without_lines(sources[k], cleaner.gone)
+            sources[k] = without_lines(sources[k], unneeded(ast.parse(sources[k]).body, needed))
+            tree = ast.parse(sources[k])
+            sources[k] = sources[k] if tree.body else ""
+        needed = needed_before(tree.body, needed)
+    used = sorted(needed & set(origins))
+    names = ", ".join(f"{origins[name]} as {name}" if origins[name] != name else name for name in used)
+    return (f"from {HELPER} import {names}" if names else ""), sources
+
+
+def modules_from_elsewhere(source: str) -> str:
+    """Return a module that a cell imports and that cannot run in a page, or ``""``."""
+    for node in ast.walk(ast.parse(source)):
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names = [node.module]
+        for name in names:
+            top = name.split(".")[0]
+            if top not in IN_THE_PAGE and top not in sys.stdlib_module_names:
+                return top
+    return ""
+
+
+def cells_of(app: Sphinx, page: str) -> list[dict[str, Any]]:
+    """Return what the page is told of its code cells, in their order; none if none is seen."""
+    executed = Path(app.outdir).parent / "jupyter_execute" / f"{page}.ipynb"
+    notebook = nbformat.read(executed, as_version=4)
+    code = [(k, cell) for k, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
+    seen = [not HIDDEN & set(cell.metadata.get("tags", [])) for _, cell in code]
+    if not any(seen):
+        return []
+    prelude, sources = page_sources([(cell.source, not shown) for (_, cell), shown in zip(code, seen, strict=True)])
+    cells: list[dict[str, Any]] = [{"k": -1, "source": prelude}] if prelude else []
+    elsewhere = ""
+    for (k, _), shown, source in zip(code, seen, sources, strict=True):
+        if not shown and not source:
+            continue
+        elsewhere = elsewhere or modules_from_elsewhere(source)
+        cells.append({"k": k} | ({} if shown else {"source": source}) | ({"elsewhere": elsewhere} if elsewhere else {}))
+    return cells
+
+
+def exercise_of(app: Sphinx, page: str) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """Return what the page of an exercise is told: its name, parts and points, and its code cells with their roles."""
+    notebook = nbformat.read(app.env.doc2path(page), as_version=4)
+    name = notebook.metadata.get("dh", {}).get("exercise", "")
+    if not name:
+        return {}, []
+    cells: list[dict[str, Any]] = [
+        {"k": k} | {key: cell.metadata["dh"][key] for key in ("role", "part") if key in cell.metadata["dh"]}
+        for k, cell in enumerate(notebook.cells)
+        if cell.cell_type == "code"
+    ]
+    told: dict[str, Any] = {"name": name, "title": heading(notebook)}
+    if carries_answers(notebook):
+        parts = load_exercise(name, ROOT / "exercises").parts
+        told["parts"] = [{"id": part.id, "title": part.title, "points": part.points} for part in parts]
+        told["honest"] = HONEST
+    else:  # what a part is worth is the course's to say
+        told["parts"] = [{"id": cell["part"], "points": None} for cell in cells if cell.get("role") == "check"]
+    if PROGRESS in app.env.found_docs:
+        here = posixpath.dirname(app.builder.get_target_uri(page))
+        told["progress"] = posixpath.relpath(app.builder.get_target_uri(PROGRESS), here or ".")
+    return told, cells
+
+
+def heading(notebook: Any) -> str:
+    """Return the first heading of a notebook, as text."""
+    found = re.search(r"^# (.+)$", "".join(notebook.cells[0].source), re.MULTILINE)
+    return found[1].strip() if found else ""
+
+
+def is_exercise(app: Sphinx, page: str) -> bool:
+    """Say whether a page is an exercise to work on."""
+    return page.startswith("exercises/") and Path(app.env.doc2path(page)).suffix == ".ipynb"
+
+
+def carries_answers(notebook: Any) -> bool:
+    """Say whether the check of a notebook judges answers, so that the page needs what they are judged by."""
+    return any("import checker" in cell.source for cell in notebook.cells if cell.cell_type == "code")
+
+
+# The page
+
+
+def add_bars(app: Sphinx, doctree: nodes.document, page: str) -> None:
+    """Give each code cell that is seen a place for its buttons, and the page its data and script."""
+    if app.builder.format != "html":
+        return
+    exercise: dict[str, Any] = {}
+    if has_notebook(app, page):
+        cells = cells_of(app, page)
+    elif is_exercise(app, page):
+        exercise, cells = exercise_of(app, page)
+    else:
+        return
+    if not cells:
+        return
+    for container in doctree.findall(nodes.container):
+        if container.get("nb_element") == "cell_code":
+            place = f'<div class="dh-cell-bar" data-cell="{container["cell_index"]}"></div>'
+            for part in list(container.findall(nodes.container)):  # a folded source lies deeper
+                if part.get("nb_element") == "cell_code_source":
+                    part += nodes.raw("", place, format="html")
+    here = posixpath.dirname(app.builder.get_target_uri(page))
+    root = posixpath.relpath(FOLDER, here or ".") + "/"
+    data: dict[str, Any] = {"name": page, "root": root, "cells": cells, "python": description(app)}
+    if exercise:
+        data["exercise"] = exercise
+        if "honest" in exercise:
+            name = f"exercises/{exercise['name']}.py"
+            data["python"]["files"] = {f"/home/pyodide/book/{name}": f"{root}{name}?v={app.config.live_cells_edition}"}
+        title = next(iter(doctree.findall(nodes.title)), None)
+        if title is not None:
+            title.parent.insert(1, nodes.raw("", '<div class="dh-part dh-all"></div>', format="html"))
+    written = json.dumps(data, ensure_ascii=False).replace("<", "\\u003c")
+    edition, script = app.config.live_cells_edition, "exercise" if exercise else "cells"
+    doctree += nodes.raw(
+        "",
+        f'<script type="application/json" id="dh-cells">{written}</script>\n'
+        f'<script defer src="{html.escape(root)}{script}.js?v={edition}"></script>\n',
+        format="html",
+    )
+    app.env.dh_live_pages.add(page)  # type: ignore[attr-defined]
+
+
+class ProgressDirective(SphinxDirective):
+    """The reader's points in all exercises, with what to press to keep them elsewhere."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return the place; what fills it is written with the page, when all exercises are known."""
+        return [nodes.raw("", '<div class="dh-progress"><p>A script shows your points here.</p></div>', format="html")]
+
+
+def add_progress(app: Sphinx, doctree: nodes.document, page: str) -> None:
+    """Tell the page of progress which exercises there are."""
+    if app.builder.format != "html" or page != PROGRESS:
+        return
+    here = posixpath.dirname(app.builder.get_target_uri(page))
+    exercises = []
+    for other in sorted(app.env.found_docs):
+        if is_exercise(app, other):
+            told, _ = exercise_of(app, other)
+            if "honest" in told:
+                address = posixpath.relpath(app.builder.get_target_uri(other), here or ".")
+                exercises.append({key: told[key] for key in ("name", "title", "parts")} | {"address": address})
+    written = json.dumps(exercises, ensure_ascii=False).replace("<", "\\u003c")
+    address = posixpath.relpath(f"{FOLDER}/progress.js", here or ".")
+    doctree += nodes.raw(
+        "",
+        f'<script type="application/json" id="dh-exercises">{written}</script>\n'
+        f'<script defer src="{address}?v={app.config.live_cells_edition}"></script>\n',
+        format="html",
+    )
+    app.env.dh_live_pages.add(page)  # type: ignore[attr-defined]
+
+
+def add_sidebar(app: Sphinx) -> None:
+    """Give every page the script that shows points in the sidebar."""
+    app.add_js_file(None, body=(SOURCES / "sidebar.js").read_text("utf-8"))
+
+
+def add_style(app: Sphinx, page: str, _template: str, _context: dict[str, Any], doctree: nodes.document | None) -> None:
+    """Give pages with cells their style sheet."""
+    if doctree is not None and page in getattr(app.env, "dh_live_pages", ()):
+        app.add_css_file("cells.css")
+
+
+def description(app: Sphinx) -> dict[str, Any]:
+    """Return what the page needs to start Python."""
+    edition = app.config.live_cells_edition
+    return the_distribution(app).description | {
+        "worker": f"worker.mjs?v={edition}",
+        "book": f"book.zip?v={edition}",
+        "elsewhere": browser_python.cdn_address(),
+        "files": {},
+        "imports": "import numpy, dhlib",
+    }
+
+
+def the_distribution(app: Sphinx) -> browser_python.Distribution:
+    """Return the Python of this build, made once."""
+    if not hasattr(app, "browser_python"):
+        try:
+            app.browser_python = browser_python.distribution(node_program())  # type: ignore[attr-defined]
+        except browser_python.NoInterpreter as fault:
+            raise ExtensionError(str(fault)) from fault
+    return app.browser_python  # type: ignore[attr-defined,no-any-return]
+
+
+def begin(app: Sphinx, env: Any, _docnames: list[str]) -> None:
+    """Start with the pages that are known to have cells."""
+    if not hasattr(env, "dh_live_pages"):
+        env.dh_live_pages = set()
+
+
+def name_edition(_app: Sphinx, config: Config) -> None:
+    """Name the content of all that the pages load: when it changes, every page is written anew."""
+    digest = hashlib.sha256((ROOT / "package-lock.json").read_bytes())
+    for folder in (SOURCES, ROOT / "book" / "bookkit", ROOT / "dhlib", ROOT / "exercises"):
+        for path in sorted(folder.rglob("*")):
+            if path.suffix in {".js", ".mjs", ".py"}:
+                digest.update(path.read_bytes())
+    digest.update(STYLE.read_bytes())
+    config["live_cells_edition"] = digest.hexdigest()[:10]
+
+
+# The site
+
+
+def write_site(app: Sphinx, exception: Exception | None) -> None:
+    """Write what Run and Edit load into the site."""
+    if exception is not None or app.builder.name != "html":
+        return
+    folder = Path(app.outdir) / FOLDER
+    if not any('id="dh-cells"' in page.read_text("utf-8") for page in Path(app.outdir).rglob("*.html")):
+        shutil.rmtree(folder, ignore_errors=True)
+        return
+    folder.mkdir(exist_ok=True)
+    found = the_distribution(app)
+    found.write(folder)
+    logger.info("── %s", found.numpy_from, color=None if "NOT SERVED" not in found.numpy_from else "red")
+    (folder / "book.zip").write_bytes(book_archive())
+    shutil.copyfile(SOURCES / "worker.mjs", folder / "worker.mjs")
+    for name in (*MATHJAX, MATHJAX_FONT):
+        target = folder / "mathjax" / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(ROOT / "node_modules" / "mathjax" / "es5" / name, target)
+    write_exercises(app, folder / "exercises")
+    bundle(folder, "cells", "editor", "exercise", "progress")
+
+
+def write_exercises(app: Sphinx, into: Path) -> None:
+    """Write the notebooks of the exercises, to be saved with answers, and what their pages judge answers by."""
+    shutil.rmtree(into, ignore_errors=True)
+    for page in sorted(app.env.found_docs):
+        source = Path(app.env.doc2path(page))
+        if is_exercise(app, page):
+            into.mkdir(exist_ok=True)
+            shutil.copyfile(source, into / source.name)
+            if carries_answers(nbformat.read(source, as_version=4)):
+                shutil.copyfile(ROOT / "exercises" / f"{source.stem}.py", into / f"{source.stem}.py")
+
+
+def book_archive() -> bytes:
+    """Return what a page's Python has of the book: the chapters' helper, the kernel, and how IPython writes values."""
+    found = importlib.util.find_spec("IPython.lib.pretty")
+    assert found is not None
+    assert found.origin is not None
+    files = {f"{HELPER}/{path.name}": path for path in sorted((ROOT / "book" / HELPER).glob("*.py"))}
+    files |= {
+        "style/colours.css": ROOT / "book" / "style" / "colours.css",
+        "live/kernel.py": SOURCES / "kernel.py",
+        "live/IPython/display.py": SOURCES / "display.py",
+        "live/IPython/lib/pretty.py": Path(found.origin),
+    }
+    written = io.BytesIO()
+    with zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as archive:
+        contents = {name: path.read_bytes() for name, path in files.items()}
+        for name in ("live/IPython/__init__.py", "live/IPython/lib/__init__.py"):
+            contents[name] = b""
+        for name in sorted(contents):
+            archive.writestr(zipfile.ZipInfo(name, browser_python.MOMENT), contents[name])
+    return written.getvalue()
+
+
+def bundle(into: Path, *names: str) -> None:
+    """Bundle scripts of the pages."""
+    done = subprocess.run(
+        [node_program(), str(ROOT / "book" / "web" / "bundle.mjs"), str(into), *(f"../cells/{name}" for name in names)],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        check=False,
+    )
+    if done.returncode:
+        raise ExtensionError(f"The scripts of live cells cannot be bundled:\n{done.stdout}")
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Tell Sphinx."""
+    app.add_config_value("live_cells_edition", "", "html")
+    app.add_directive("dh-progress", ProgressDirective)
+    app.connect("config-inited", name_edition)
+    app.connect("builder-inited", add_sidebar)
+    app.connect("env-before-read-docs", begin)
+    app.connect("doctree-resolved", add_bars)
+    app.connect("doctree-resolved", add_progress)
+    app.connect("html-page-context", add_style)
+    app.connect("build-finished", write_site)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
