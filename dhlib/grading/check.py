@@ -60,11 +60,27 @@ class Checker:
         DHError
             If there is no such part.
         """
-        part = self._marker.exercise.part(part_id)
-        mark = self._marker.mark(part_id, read_answer(part.asks.request(), _one(part_id, answer)))
+        mark = self.mark(part_id, _one(part_id, answer))
         if not mark.passed:
             raise CheckFailed(tell(mark))
         print(tell(mark))
+
+    def mark(self, part_id: str, answer: Any) -> Mark:
+        """The mark of an answer; DHError if there is no such part."""
+        part = self._marker.exercise.part(part_id)
+        return self._marker.mark(part_id, read_answer(part.asks.request(), answer))
+
+    def leads_to(self, part_id: str) -> list[str]:
+        """The earlier parts that a part follows from, and those that they follow from, in their order."""
+        exercise = self._marker.exercise
+        needed, waiting = set(), [part_id]
+        while waiting:
+            follows = exercise.part(waiting.pop()).follows
+            for earlier in follows.parts if follows else ():
+                if earlier not in needed:
+                    needed.add(earlier)
+                    waiting.append(earlier)
+        return [part.id for part in exercise.parts if part.id in needed]
 
 
 class FormChecker:
@@ -100,14 +116,18 @@ class FormChecker:
         DHError
             If there is no such part.
         """
+        print(self.says(part_id, _one(part_id, answer)))
+
+    def says(self, part_id: str, answer: Any) -> str:
+        """The words for an answer whose form is right; raises what a call raises."""
         form = self._forms.get(part_id)
         if form is None:
             known = ", ".join(self._forms)
             raise DHError(f"the exercise {self._name} has no part {part_id!r}; its parts are {known}.")
-        headline, message = fault_of(part_id, form, _one(part_id, answer))
+        headline, message = fault_of(part_id, form, answer)
         if headline:
             raise CheckFailed(f"{part_id}: {headline}. {message}")
-        print(f"{part_id}: the form is right, {wanted(form)}. The course will say whether the answer is.")
+        return f"{part_id}: the form is right, {wanted(form)}. The course will say whether the answer is."
 
 
 def _one(part_id: str, answer: tuple[Any, ...]) -> Any:

@@ -12,7 +12,7 @@ from dhlib.grading.closing import close_parts
 from dhlib.grading.course.papers import NotAssigned, Paper, check_tag, load_paper, read_tag
 from dhlib.grading.exercise import Exercise, find_exercise
 from dhlib.grading.marking import Marker
-from dhlib.grading.marks import OPEN, Mark
+from dhlib.grading.marks import OPEN, Mark, stopped_with
 from dhlib.grading.notebook import Cell, damage, load_notebook, merge, read_cells
 from dhlib.grading.wall import Limits, Outcome, Sandbox
 
@@ -137,7 +137,7 @@ def with_error(mark: Mark, cells: Sequence[Cell], outcome: Outcome) -> Mark:
             if k in outcome.killers:
                 says = "Its cell ended the whole program or never ended, so it was left out."
             elif k in outcome.errors:
-                says = f"Its cell stopped with an error: {outcome.errors[k].rstrip('.')}."
+                says = stopped_with(outcome.errors[k])
             else:
                 continue
             return Mark(mark.part, mark.points, mark.out_of, mark.verdict, says, "", mark.section)

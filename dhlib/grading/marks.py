@@ -60,6 +60,17 @@ class Mark:
         return f"{self.part}: {HEADLINES[self.verdict]}. {self.message}".rstrip()
 
 
+def stopped_with(error: str) -> str:
+    """What to say of an answer that is not there because its cell failed.
+
+    Examples
+    --------
+    >>> stopped_with("NameError: name 'a' is not defined")
+    "Its cell stopped with an error: NameError: name 'a' is not defined."
+    """
+    return f"Its cell stopped with an error: {error.rstrip('.')}."
+
+
 def make_mark(
     part: Part, verdict: str, message: str = "", credit: float = 0.0, known: Misconception | None = None
 ) -> Mark:

@@ -1,0 +1,78 @@
+// The reader's progress: all exercises with their points, to keep as a file and to bring from one.
+
+import { kept, make } from "./make.js";
+import { PROGRESS, of } from "./points.js";
+
+const FORMAT = "dh-book progress 1";
+const OURS = /^dh-(progress$|cells exercises\/|hints )/;
+
+const place = document.querySelector(".dh-progress");
+const exercises = JSON.parse(document.getElementById("dh-exercises").textContent);
+const said = make("p", { role: "status" });
+
+function rows() {
+  const progress = kept.read(PROGRESS) ?? {};
+  return exercises.map(({ name, title, address, parts }) => {
+    const earned = progress[name]?.parts ?? {};
+    const points = parts.reduce((sum, { id }) => sum + (earned[id]?.points ?? 0), 0);
+    const all = parts.reduce((sum, part) => sum + part.points, 0);
+    const done = parts.filter(({ id }) => earned[id]?.passed).length;
+    return make("tr", {},
+      make("th", { scope: "row" }, make("a", { href: address }, title)),
+      make("td", {}, `${done} of ${parts.length}`),
+      make("td", {}, of(points, all)),
+      make("td", {}, make("progress", { max: all, value: points, "aria-label": `${title}: ${of(points, all)}` })));
+  });
+}
+
+const body = make("tbody");
+const show = () => body.replaceChildren(...rows());
+
+function written() {
+  const entries = Object.keys(localStorage).filter((key) => OURS.test(key)).map((key) => [key, kept.read(key)]);
+  return { format: FORMAT, kept: Object.fromEntries(entries) };
+}
+
+function save(button) {
+  const link = make("a", { href: URL.createObjectURL(new Blob([JSON.stringify(written(), null, 1)], { type: "application/json" })), download: "dh-book-progress.json" });
+  button.after(link);
+  link.click();
+  link.remove();
+  said.textContent = "Saved as dh-book-progress.json: your points, what you have written, and which hints are open.";
+}
+
+/** Put back what a file keeps; it replaces what is here, exercise by exercise. */
+async function load(file) {
+  let data;
+  try {
+    data = JSON.parse(await file.text());
+  } catch {
+    data = null;
+  }
+  const entries = data?.format === FORMAT && data.kept && typeof data.kept === "object" ? Object.entries(data.kept).filter(([key]) => OURS.test(key)) : null;
+  if (!entries || !entries.every(([, value]) => value && typeof value === "object")) {
+    said.textContent = `${file.name} is no progress of this book; it should be a file that this page has saved. Nothing was changed.`;
+    return;
+  }
+  for (const [key, value] of entries) kept.write(key, key === PROGRESS ? { ...kept.read(key), ...value } : value);
+  show();
+  dispatchEvent(new Event("dh-progress"));
+  said.textContent = `Progress of ${entries.length} entries taken from ${file.name}.`;
+}
+
+function forget() {
+  for (const key of Object.keys(localStorage)) if (OURS.test(key)) kept.write(key, null);
+  show();
+  for (const badge of document.querySelectorAll(".dh-badge")) badge.remove();
+  said.textContent = "Forgotten: points, answers and opened hints.";
+}
+
+const file = make("input", { type: "file", accept: "application/json,.json", id: "dh-progress-file", class: "dh-file", change: () => { if (file.files[0]) load(file.files[0]); file.value = ""; } });
+const saving = make("button", { type: "button", click: () => save(saving) }, "Save as a file");
+const forgetting = make("button", { type: "button", click: () => (forgetting.dataset.sure ? forget() : Object.assign(forgetting, { textContent: "Really forget all of it?" }).setAttribute("data-sure", "")) }, "Forget all");
+place.replaceChildren(
+  make("div", { class: "pst-scrollable-table-container" }, make("table", { class: "table" },
+    make("thead", {}, make("tr", {}, ...["Exercise", "Parts done", "Points", ""].map((text) => make(text ? "th" : "td", text ? { scope: "col" } : {}, text)))), body)),
+  make("div", { class: "dh-buttons" }, saving, make("label", { for: "dh-progress-file" }, "Take from a file: "), file, forgetting),
+  said);
+show();
