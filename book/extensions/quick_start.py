@@ -13,6 +13,8 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from formulas import ROOT
+
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
@@ -90,7 +92,13 @@ def quicken_pages(app: Sphinx, exception: Exception | None) -> None:
             old.unlink()
 
 
+def add_script(app: Sphinx) -> None:
+    """Give every page the script that lets links find their section."""
+    app.add_js_file(None, body=(ROOT / "book" / "web" / "sections.js").read_text("utf-8"))
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
+    app.connect("builder-inited", add_script)
     app.connect("build-finished", quicken_pages, priority=660)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

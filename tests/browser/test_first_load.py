@@ -93,6 +93,25 @@ def test_a_shift_would_be_found(browser: Any, address: str) -> None:
     context.close()
 
 
+@pytest.mark.parametrize("width", [1280, 390])
+def test_links_lead_to_their_section(browser: Any, address: str, width: int) -> None:
+    """Though what is far from the screen is not laid out: by an address, by a click, and on coming back."""
+    page = browser.new_page(viewport={"width": width, "height": 800})
+    top = "id => document.getElementById(id).getBoundingClientRect().top"
+    arrived = f"id => {{ const top = ({top})(id); return top > -5 && top < 500; }}"
+    for target in ("traps", "numbers-first"):
+        page.goto("about:blank")
+        page.goto(f"{address}/book/classic.html#{target}")
+        page.wait_for_function(arrived, arg=target)
+    page.goto(f"{address}/book/classic.html")
+    page.evaluate("document.querySelector('.bd-sidebar-secondary a[href=\"#traps\"]').click()")
+    page.wait_for_function(arrived, arg="traps")
+    page.wait_for_timeout(1000)
+    page.reload()
+    page.wait_for_function(arrived, arg="traps")
+    page.close()
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_without_scripts_every_page_reads(browser: Any, site: Path, address: str, theme: str) -> None:
     context = browser.new_context(viewport={"width": 390, "height": 800}, java_script_enabled=False, color_scheme=theme)
