@@ -122,7 +122,7 @@ test-library: $(UV_READY)
 	@$(UV) venv --quiet --clear --python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" $(LIBRARY)
 	@$(UV) pip install --quiet --python $(LIBRARY) --resolution $(RESOLUTION) '.[plot]' --group library
 	@$(UV) pip list --quiet --python $(LIBRARY) | grep -E '^(numpy|sympy|matplotlib|pandas) '
-	@cd tests/dhlib && ../../$(LIBRARY)/bin/python -m pytest -q --confcutdir=. -p no:cacheprovider .
+	@$(LIBRARY)/bin/python -m pytest -q -n auto -p no:cacheprovider --ignore=dhlib/grading tests/dhlib dhlib
 
 links: book
 	@echo '── links to others ──'

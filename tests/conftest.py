@@ -14,6 +14,7 @@ import chromium
 import pytest
 from building import build_book
 from filelock import FileLock
+from hypothesis import settings
 from serve import server
 
 ROOT = Path(__file__).parent.parent
@@ -21,6 +22,10 @@ ROOT = Path(__file__).parent.parent
 # Copies of the book are built elsewhere, and find numpy for the browser where the book itself finds it.
 if (WHEELS := ROOT.parent / "shared" / "wasm").is_dir():
     os.environ.setdefault("DHBOOK_WHEELS", str(WHEELS))
+
+# No test measures time, so none of Hypothesis does.
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
 
 
 @pytest.fixture(scope="session")
