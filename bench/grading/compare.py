@@ -30,6 +30,8 @@ from environment import NotToBeHad, python_of, version_of
 
 COUNT = 30
 ROUNDS = 3
+#: Student to part to source, and student to part to whether it is marked right.
+Class = dict[str, dict[str, str]]
 Marks = dict[str, dict[str, bool]]
 
 
@@ -41,21 +43,26 @@ class Grader:
     ----------
     peer, call : str
     grade : callable
-        Grade the class in a folder made for it; return who is right in what, or nothing if it gives no marks.
+        Grade a class in a folder made for it; return who is right in what, or nothing if it gives no marks.
     sandbox : bool
         Whether what strangers wrote is shut in while it runs.
     """
 
     peer: str
     call: str
-    grade: Callable[[Path], Marks | None]
+    grade: Callable[[Path, Class], Marks | None]
     sandbox: bool = False
 
 
 def run(*words: Any, folder: Path, failing: bool = False) -> str:
     """Run a command; a grader that ends with an error has not graded."""
     said = subprocess.run(
-        [str(word) for word in words], cwd=folder, capture_output=True, text=True, env=surroundings(Path(words[0])), check=False
+        [str(word) for word in words],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        env=surroundings(Path(words[0])),
+        check=False,
     )
     if said.returncode != 0 and not failing:
         raise NotToBeHad(f"{words[0]}: {(said.stderr or said.stdout).strip().splitlines()[-1][:200]}")
@@ -81,12 +88,12 @@ def student_in(text: str) -> str:
     return found[0]
 
 
-def with_dhlib(folder: Path) -> Marks:
+def with_dhlib(folder: Path, hand_ins: Class) -> Marks:
     """`dhlib grade`, with its sandbox."""
-    for name, right in students(COUNT).items():
-        work.write(folder / "handed-in" / name / "two_links.ipynb", work.for_dhlib(right))
+    for name, sources in hand_ins.items():
+        work.write(folder / "handed-in" / name / "two_links.ipynb", work.for_dhlib(sources))
     shutil.copy(Path(__file__).parent / "two_links.py", ensured(folder / "exercises") / "two_links.py")
-    pristine = work.for_dhlib(dict.fromkeys(work.PARTS, True))
+    pristine = work.for_dhlib(dict.fromkeys(work.PARTS, "..."))
     for cell in pristine["cells"]:
         if cell["metadata"]["dh"]["role"] == "answer":
             cell["source"] = [f"{cell['metadata']['dh']['part']} = ..."]
@@ -109,12 +116,12 @@ def with_dhlib(folder: Path) -> Marks:
     return marks
 
 
-def with_nbgrader(folder: Path) -> Marks:
+def with_nbgrader(folder: Path, hand_ins: Class) -> Marks:
     """`nbgrader autograde`, one notebook after another, as it does."""
     home = python_of("nbgrader").parent
     (folder / "nbgrader_config.py").write_text("c = get_config()\nc.CourseDirectory.course_id = 'bench'\n")
-    right = {part: texts[0] for part, texts in work.PARTS.items()}
-    work.write(folder / "source" / "ps1" / "two_links.ipynb", work.for_nbgrader(right))
+    solution = work.answers(dict.fromkeys(work.PARTS, True))
+    work.write(folder / "source" / "ps1" / "two_links.ipynb", work.for_nbgrader(solution))
     run(home / "nbgrader", "generate_assignment", "ps1", "--force", folder=folder)
     for name, right_parts in students(COUNT).items():
         work.write(
@@ -133,12 +140,12 @@ def with_nbgrader(folder: Path) -> Marks:
     return marks
 
 
-def otter_class(folder: Path) -> Path:
+def otter_class(folder: Path, hand_ins: Class) -> Path:
     """Write the class for otter, and make its autograder as `otter assign` would: tests in a zip."""
     import zipfile
 
-    for name, right in students(COUNT).items():
-        work.write(folder / "submitted" / f"{name}.ipynb", work.for_otter(right))
+    for name, sources in hand_ins.items():
+        work.write(folder / "submitted" / f"{name}.ipynb", work.for_otter(sources))
     with zipfile.ZipFile(folder / "autograder.zip", "w") as archive:
         settings = {"assignment_name": "two_links", "lang": "python", "points_possible": 4, "score_threshold": None}
         archive.writestr("otter_config.json", json.dumps(settings))
@@ -150,12 +157,12 @@ def otter_class(folder: Path) -> Path:
     return folder / "autograder.zip"
 
 
-def with_otter(folder: Path) -> Marks:
+def with_otter(folder: Path, hand_ins: Class) -> Marks:
     """`otter run`, which starts a process for every notebook."""
     home = python_of("otter").parent
-    otter_class(folder)
+    otter_class(folder, hand_ins)
     marks: Marks = {}
-    for name in students(COUNT):
+    for name in hand_ins:
         ensured(folder / name)
         timed_run(
             folder, home / "otter", "run", "--no-logo", "-a", "autograder.zip", "-o", name, f"submitted/{name}.ipynb"
@@ -166,10 +173,10 @@ def with_otter(folder: Path) -> Marks:
     return marks
 
 
-def with_otter_in_python(folder: Path) -> Marks:
+def with_otter_in_python(folder: Path, hand_ins: Class) -> Marks:
     """`otter.api.grade_submission` in one process."""
     home = python_of("otter").parent
-    otter_class(folder)
+    otter_class(folder, hand_ins)
     program = (
         "import json, otter.api\nfrom pathlib import Path\nmarks = {}\n"
         "for path in sorted(Path('submitted').glob('*.ipynb')):\n"
@@ -182,14 +189,14 @@ def with_otter_in_python(folder: Path) -> Marks:
     return {name: {part: scores[part] == 1 for part in work.PARTS} for name, scores in marks.items()}
 
 
-def nbval(*options: str, one_by_one: bool = False) -> Callable[[Path], Marks]:
+def nbval(*options: str, one_by_one: bool = False) -> Callable[[Path, Class], Marks]:
     """`pytest --nbval-lax`."""
 
-    def grade(folder: Path) -> Marks:
+    def grade(folder: Path, hand_ins: Class) -> Marks:
         home = python_of("nbval").parent
-        names = list(students(COUNT))
-        for name, right in students(COUNT).items():
-            work.write(folder / f"{name}.ipynb", work.plain(right))
+        names = list(hand_ins)
+        for name, sources in hand_ins.items():
+            work.write(folder / f"{name}.ipynb", work.plain(sources))
         groups = [[name] for name in names] if one_by_one else [names]
         marks: Marks = {}
         cells = [part for name in work.PARTS for part in ("", name)]
@@ -211,11 +218,11 @@ def nbval(*options: str, one_by_one: bool = False) -> Callable[[Path], Marks]:
     return grade
 
 
-def with_nbclient(folder: Path) -> None:
+def with_nbclient(folder: Path, hand_ins: Class) -> None:
     """nbclient, in one process: it executes and marks nothing."""
     home = python_of("nbval").parent
-    for name, right in students(COUNT).items():
-        work.write(folder / f"{name}.ipynb", work.plain(right))
+    for name, sources in hand_ins.items():
+        work.write(folder / f"{name}.ipynb", work.plain(sources))
     program = (
         "import nbformat, nbclient\nfrom pathlib import Path\n"
         "for path in sorted(Path('.').glob('*.ipynb')):\n"
@@ -235,6 +242,9 @@ GRADERS = (
     Grader("nbval", "pytest --nbval-lax -n 2 --dist loadscope", nbval("-n", "2", "--dist", "loadscope")),
     Grader("nbclient", "NotebookClient.execute, no marks", with_nbclient),
 )
+
+#: How long a command may take, in seconds; None is for ever.
+patience: float | None = None
 
 #: Seconds of the commands that grade, without what prepares the class.
 _taken: list[float] = []
@@ -256,10 +266,11 @@ def ensured(folder: Path) -> Path:
 def timed(grader: Grader) -> float:
     """Grade the class once; check the marks; return the seconds."""
     _taken.clear()
+    planned = students(COUNT)
     with tempfile.TemporaryDirectory() as name:
-        marks = grader.grade(Path(name))
-    if marks is not None and marks != students(COUNT):
-        wrong = {who: what for who, what in marks.items() if what != students(COUNT).get(who)}
+        marks = grader.grade(Path(name), {who: work.answers(right) for who, right in planned.items()})
+    if marks is not None and marks != planned:
+        wrong = {who: what for who, what in marks.items() if what != planned.get(who)}
         raise NotToBeHad(f"gives other marks than planned, for instance {next(iter(wrong.items()), 'none at all')}")
     return sum(_taken)
 

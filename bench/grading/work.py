@@ -91,15 +91,15 @@ def write(path: Path, content: dict[str, Any]) -> None:
     path.write_text(json.dumps(content, indent=1), encoding="utf-8")
 
 
-def plain(right: dict[str, bool]) -> dict[str, Any]:
+def plain(sources: dict[str, str]) -> dict[str, Any]:
     """For nbval and nbclient: each answer, and its test as a cell."""
     cells = [code("setup", SETUP)]
-    for part, source in answers(right).items():
+    for part, source in sources.items():
         cells += [code(f"answer-{part}", source), code(f"test-{part}", PARTS[part][2])]
     return notebook(cells)
 
 
-def for_nbgrader(source: dict[str, str]) -> dict[str, Any]:
+def for_nbgrader(sources: dict[str, str]) -> dict[str, Any]:
     """For nbgrader: its marks in the metadata."""
 
     def about(cell_id: str, **what: Any) -> dict[str, Any]:
@@ -107,28 +107,28 @@ def for_nbgrader(source: dict[str, str]) -> dict[str, Any]:
         return {"nbgrader": default | {"task": False} | what}
 
     cells = [code("setup", SETUP, about("setup", locked=True))]
-    for part, text in source.items():
+    for part, text in sources.items():
         cells.append(code(f"answer-{part}", text, about(f"answer-{part}", solution=True)))
         test = about(f"test-{part}", grade=True, locked=True, points=1)
         cells.append(code(f"test-{part}", PARTS[part][2], test))
     return notebook(cells)
 
 
-def for_otter(right: dict[str, bool]) -> dict[str, Any]:
+def for_otter(sources: dict[str, str]) -> dict[str, Any]:
     """For otter: the tests are in its autograder, the notebook names the assignment's checks."""
     cells = [code("setup", SETUP)]
-    cells += [code(f"answer-{part}", source) for part, source in answers(right).items()]
+    cells += [code(f"answer-{part}", source) for part, source in sources.items()]
     return notebook(cells, {"otter": {"assignment_name": "two_links"}})
 
 
-def for_dhlib(right: dict[str, bool]) -> dict[str, Any]:
+def for_dhlib(sources: dict[str, str]) -> dict[str, Any]:
     """For dhlib: its roles in the metadata."""
 
     def about(role: str, part: str = "") -> dict[str, Any]:
         return {"dh": {"role": role, **({"part": part} if part else {})}}
 
     cells = [code("setup", SETUP, about("setup"))]
-    for part, source in answers(right).items():
+    for part, source in sources.items():
         cells.append(code(f"answer-{part}", source, about("answer", part)))
         cells.append(code(f"check-{part}", f'check("{part}", {part})', about("check", part)))
     return notebook(cells, {"dh": {"exercise": "two_links"}})
