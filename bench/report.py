@@ -185,6 +185,66 @@ def imports(result: Result) -> list[Table]:
     ]
 
 
+def grading(result: Result) -> list[Table]:
+    """The same thirty notebooks."""
+    ours = sorted(row["ours"] for row in result["rows"])
+    rows = [
+        ["dhlib", "`dhlib grade FOLDER`, with its sandbox", _each(ours[0], ours[-1]), _rate(ours[0], ours[-1]), "1 ×"]
+    ]
+    rows += [
+        [row["peer"], f"`{row['call']}`", _each(row["each"]), _rate(row["each"]), times(row["ratio"])]
+        for row in result["rows"]
+    ]
+    return [
+        Table(
+            f"Grading the same {result['count']} notebooks of four parts",
+            "The whole command each time, start and gradebook included. The marks of all were checked to be those that "
+            "were planned. No peer has a sandbox here; nbclient only executes.",
+            ["grader", "call", "for each", "in a minute", "of ours"],
+            rows,
+            _missing(result),
+        )
+    ]
+
+
+def _each(*values: float) -> str:
+    return " – ".join(dict.fromkeys(seconds(value) for value in values))
+
+
+def _rate(*values: float) -> str:
+    return " – ".join(dict.fromkeys(f"{60 / value:.3g}" for value in values))
+
+
+def hostile(result: Result) -> list[Table]:
+    """One hostile notebook among honest ones."""
+    calls = list(dict.fromkeys(row["call"] for row in result["rows"]))
+    rows = []
+    for attack in result["attacks"]:
+        found = {row["call"]: row for row in result["rows"] if row["attack"] == attack}
+        rows.append([attack, *(_verdict(found[call]) if call in found else "" for call in calls)])
+    return [
+        Table(
+            "One hostile notebook between two honest ones",
+            "‘Held’: no undeserved point, the honest two have all of theirs, nothing got out, and what the hostile "
+            "notebook answers rightly after its attack still counts.",
+            ["the notebook …", *(f"`{call}`" for call in calls)],
+            rows,
+            _missing(result),
+        )
+    ]
+
+
+def _verdict(row: dict[str, Any]) -> str:
+    faults = [
+        *(["undeserved point"] if row["undeserved"] else []),
+        *([row["ended"].split(":")[0]] if row["ended"] else []),
+        *(["honest ones lose"] if not row["others"] else []),
+        *(["its later parts lost"] if row["others"] and not row["later_parts"] else []),
+        *row["harm"],
+    ]
+    return ", ".join(faults) or "held"
+
+
 def _missing(result: Result) -> list[str]:
     return [f"{peer}: {why}" for peer, why in sorted(result.get("missing", {}).items())]
 
@@ -196,6 +256,8 @@ TABLES: dict[str, Callable[[Result], list[Table]]] = {
     "symbolic": symbolic,
     "placing": placing,
     "imports": imports,
+    "grading": grading,
+    "hostile": hostile,
 }
 
 

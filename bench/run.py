@@ -105,12 +105,33 @@ def imports() -> dict[str, Any]:
     return over_peers("imports", KINEMATICS, "kinematics/imports.py")
 
 
+def in_the_book(program: str, minutes: float) -> dict[str, Any]:
+    """Run a workload in the book's own environment, which holds dhlib with its grader."""
+    said = subprocess.run(
+        [sys.executable, BENCH / program], stdout=subprocess.PIPE, text=True, cwd=ROOT, timeout=60 * minutes, check=True
+    )
+    found: dict[str, Any] = json.loads(said.stdout)
+    return found
+
+
+def grading() -> dict[str, Any]:
+    """The same thirty notebooks."""
+    return in_the_book("grading/compare.py", 120)
+
+
+def hostile() -> dict[str, Any]:
+    """One hostile notebook among honest ones."""
+    return in_the_book("grading/hostile.py", 120)
+
+
 WORKLOADS: dict[str, Callable[[], dict[str, Any]]] = {
     "forward": forward,
     "accuracy": accuracy,
     "symbolic": symbolic,
     "placing": placing,
     "imports": imports,
+    "grading": grading,
+    "hostile": hostile,
 }
 
 

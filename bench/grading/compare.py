@@ -123,10 +123,8 @@ def with_nbgrader(folder: Path, hand_ins: Class) -> Marks:
     solution = work.answers(dict.fromkeys(work.PARTS, True))
     work.write(folder / "source" / "ps1" / "two_links.ipynb", work.for_nbgrader(solution))
     run(home / "nbgrader", "generate_assignment", "ps1", "--force", folder=folder)
-    for name, right_parts in students(COUNT).items():
-        work.write(
-            folder / "submitted" / name / "ps1" / "two_links.ipynb", work.for_nbgrader(work.answers(right_parts))
-        )
+    for name, sources in hand_ins.items():
+        work.write(folder / "submitted" / name / "ps1" / "two_links.ipynb", work.for_nbgrader(sources))
     timed_run(folder, home / "nbgrader", "autograde", "ps1", "--force")
     marks: Marks = {}
     program = (
