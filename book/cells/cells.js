@@ -1,6 +1,5 @@
 // The cells of a page: Run, Edit, Reset, Stop, Run all above.
 
-import { show } from "./figures.js";
 import { hash, kept, make } from "./make.js";
 import { Outputs } from "./outputs.js";
 import { Session, Stopped } from "./session.js";
@@ -311,6 +310,5 @@ export const cells = items.filter((item) => item instanceof Cell);
 
 session.listeners.add((event) => {
   if (event.type === "ended") for (const item of items) item.ran = null;
-  if (event.type === "figure") show(event);
 });
 globalThis.DhCells = { cells, items, session };

@@ -1,7 +1,5 @@
 // The Python of a page: a worker that starts at the first Run, runs one thing after the other, and ends at Stop.
 
-import { states } from "./figures.js";
-
 export class Stopped extends Error {}
 export class Broken extends Error {}
 
@@ -35,7 +33,6 @@ export class Session {
           done();
         } else if (data.type === "broken" && data.id === undefined) this.end(new Broken(data.text));
         else if (data.type === "output") this.asked.values().next().value?.output(data.output);
-        else if (data.type === "figure") this.tell(data);
         else if (data.type === "step" || data.type === "loaded") this.tell(data);
         else this.#answer(data);
       };
@@ -56,7 +53,7 @@ export class Session {
     const id = (this.count += 1);
     return new Promise((done, refuse) => {
       this.asked.set(id, { done, refuse, output });
-      this.worker.postMessage({ ...message, id, figures: states() });
+      this.worker.postMessage({ ...message, id });
     });
   }
 
