@@ -94,7 +94,7 @@ def differs(part, of_the_book):
 def test_no_variant_is_luckier_than_the_book(name, variants):
     """What differs from the right answer in the book differs from it for every student: no zero hides a mistake."""
     book = variants[name].of().exercise
-    for k in range(12):
+    for k in range(3):
         variant = variants[name].of(KEY, f"student {k}")
         assert [part.id for part in variant.exercise.parts] == [part.id for part in book.parts]
         assert variant.exercise.points == book.points
