@@ -2,6 +2,7 @@
 
 import copy
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -90,6 +91,55 @@ def test_stubs_never_raise_by_themselves(name, worked, every):
             exec("".join(cell["source"]), names)
     assert {part.id for part in every.parts} <= set(names)
     assert any(names[part.id] is ... for part in every.parts)
+
+
+def unhelpful(notebook, parts):
+    """Each part of a solution notebook that lacks points in its heading, a hint in its task or a why after it."""
+    found, headings, waiting, task, heading = [], {}, [], "", ""
+    for cell in notebook["cells"]:
+        role, source = cell["metadata"]["dh"]["role"], "".join(cell["source"])
+        if role == "text":
+            task = source
+            heading = source.splitlines()[0] if source.startswith("## ") else heading
+            if source.startswith("## "):
+                found += [f"{part}: no why" for part in waiting]
+                waiting = []
+        elif role == "answer":
+            part = cell["metadata"]["dh"]["part"]
+            headings.setdefault(heading, []).append(part)
+            waiting.append(part)
+            if not re.search(r"<details><summary>Hint</summary>\n\n.+?\n\n</details>", task, re.DOTALL):
+                found.append(f"{part}: no hint")
+        elif role == "solution" and source.startswith("**Why"):
+            waiting = []
+    found += [f"{part}: no why" for part in waiting]
+    for heading, ids in headings.items():
+        said = re.search(r"\((\d.*?) points?( each)?\)$", heading)
+        numbers = [int(number) for number in re.findall(r"\d+", said[1])] if said else []
+        worth = [part.points for part in parts if part.id in ids]
+        if (numbers * len(ids) if said and said[2] else numbers) != worth:
+            found.append(f"{', '.join(ids)}: no points")
+    return found
+
+
+def test_every_part_says_its_points_and_has_a_hint_and_a_why(worked, every):
+    assert unhelpful(worked, every.parts) == []
+
+
+@pytest.mark.parametrize(
+    ("cell_id", "old", "new", "lacking"),
+    [
+        ("link-task", "<details>", "", ["link: no hint"]),
+        ("link-why", "**Why.**", "", ["link: no why"]),
+        ("ends-why", "**Why.**", "", ["X: no why", "T4_back: no why"]),
+        ("T4-task", "(2 and 1 points)", "(1 and 2 points)", ["T4, T4_quarter: no points"]),
+        ("links-task", " (1 point each)", "", ["A1, A2, A3, A4: no points"]),
+    ],
+)
+def test_a_part_without_help_is_named(solution, exercise, cell_id, old, new, lacking):
+    cell = the(solution["cells"], cell_id)
+    cell["source"] = "".join(cell["source"]).replace(old, new)
+    assert unhelpful(solution, exercise.parts) == lacking
 
 
 @pytest.mark.parametrize(
