@@ -34,7 +34,9 @@ def test_every_misconception_is_named_and_every_right_answer_known(every, result
     assert as_row(tally) == FIGURES[every.name], "run make diagnosis"
 
 
-@pytest.mark.parametrize("name", ["convert", "pa10_6c", "pa10_7c", "puma560", "quickshot", "scara", "stanford"])
+@pytest.mark.parametrize(
+    "name", ["axes_to_table", "convert", "pa10_6c", "pa10_7c", "puma560", "quickshot", "scara", "stanford"]
+)
 def test_misconceptions_are_named_with_a_students_own_numbers_too(name):
     """By value, since that is what other numbers change: none passes, and as many are told exactly."""
     variants = Variants(name, ROOT / "exercises")

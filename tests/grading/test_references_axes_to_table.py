@@ -32,7 +32,7 @@ def given():
     notebook = json.loads((ROOT / "solutions" / "axes_to_table.ipynb").read_text(encoding="utf-8"))
     names = {}
     for cell in notebook["cells"]:
-        if cell["metadata"]["dh"]["role"] == "setup":
+        if cell["cell_type"] == "code" and cell["metadata"]["dh"]["role"] in ("setup", "given"):
             exec("".join(cell["source"]), names)  # our own notebook
     return names
 
