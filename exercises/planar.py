@@ -73,6 +73,16 @@ def one_of(part, title, section, right, **options):
     return choice(part, title, right, options, section)
 
 
+def own_link(classic):
+    """The lengths of a classic table, each left in its row."""
+    return Trap(
+        "Row i holds the length of link i, as in the classic convention. In the modified one it holds the link before "
+        "joint i, and before joint 1 there is none.",
+        lambda chain: Chain(classic.joints, chain.convention),
+        "row",
+    )
+
+
 def exercise(given):
     """The exercise with these numbers."""
     l1, l2, l3 = given.lengths
@@ -110,6 +120,7 @@ def exercise(given):
                 Table("modified"),
                 section="sec-both-columns",
                 arm=two_modified,
+                traps=[own_link(two)],
             ),
             Part(
                 "T2_modified",
@@ -158,6 +169,7 @@ def exercise(given):
                 Table("modified"),
                 section="sec-both-columns",
                 arm=three_modified,
+                traps=[own_link(three)],
             ),
             Part(
                 "link3",
@@ -166,6 +178,14 @@ def exercise(given):
                 link_function(3, seed=6, length_tolerance=1e-3, name="link3"),
                 section="sec-modified-product",
                 arm=three_modified,
+                traps=[
+                    Trap(
+                        "These are the classic link matrices: they lead to the far end of link i. The modified ones go "
+                        "along the link before joint i, and then turn.",
+                        lambda _, i, q: three.A(i, q),
+                        "convention",
+                    )
+                ],
                 kinematics=False,
             ),
             Part(

@@ -27,6 +27,7 @@ SENTENCES = {
     "no_function": "{part} is an object of type {type}; a function is asked for, defined with def {part}(…).",
     "returns_nothing": "{part} returns nothing. Does it end with return?",
     "raised": "{part} stopped with {type}: {text}.",
+    "index": "{part} stopped with {type}: {text}. Links and joints count from 1, the items of a list from 0.",
     "no_table": "{part} is an object of type {type}; a table is asked for: a list of rows, one per joint.",
     "no_choice": "{part} is an object of type {type}; one of {options} is asked for, in quotation marks.",
     "timeout": "{part} took too long and was stopped. Is there a loop without an end?",
@@ -43,6 +44,8 @@ def shape_text(shape: list[int]) -> str:
     --------
     >>> shape_text([3, 4]), shape_text([]), shape_text([3])
     ('3 rows and 4 columns', 'only one number', '3 numbers')
+    >>> shape_text([4, 4, 4])
+    '4 matrices of 4 by 4'
     """
     if not shape:
         return "only one number"
@@ -51,6 +54,9 @@ def shape_text(shape: list[int]) -> str:
     if len(shape) == 2:
         rows, columns = shape
         return f"{rows} row{'s' if rows != 1 else ''} and {columns} column{'s' if columns != 1 else ''}"
+    if len(shape) == 3:
+        count, rows, columns = shape
+        return f"{count} {'matrix' if count == 1 else 'matrices'} of {rows} by {columns}"
     return f"shape {' × '.join(map(str, shape))}"
 
 
@@ -72,6 +78,8 @@ def sentence(fault: dict[str, Any], part: str, wanted: str, options: str = "") -
     shape = fault.get("shape")
     names, known = (", ".join(quoted(name) for name in _list(fault.get(key))[:6]) for key in ("names", "known"))
     kind = fault.get("fault")
+    if kind == "raised" and fault.get("type") == "IndexError":
+        kind = "index"
     template = SENTENCES.get(kind if isinstance(kind, str) else "refused", SENTENCES["refused"])
     return template.format(
         part=part,

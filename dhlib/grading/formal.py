@@ -15,9 +15,10 @@ import numpy as np
 
 from dhlib.errors import DHError
 from dhlib.grading.faults import MISSING, sentence, shape_text
-from dhlib.grading.poses import improper
+from dhlib.grading.poses import improper, listed
 
 if TYPE_CHECKING:
+    from dhlib.chain import Chain
     from dhlib.grading.exercise import Part
 
 Form = Mapping[str, Any]
@@ -142,6 +143,25 @@ def _odd_choice(form: Form, reading: Mapping[str, Any]) -> str:
     return "Say why, too: give the letters of the reasons that hold." if form.get("reasons") and not letters else ""
 
 
+def other_symbols(chain: Chain) -> str:
+    """Say which symbols a table holds besides the variables of its joints.
+
+    Examples
+    --------
+    >>> from dhlib import Chain
+    >>> other_symbols(Chain.from_table([["q1", 0, "L", 0]], convention="classic"))
+    'row 1 holds L: besides the variable of its own joint, q1, it should hold numbers only, and no other symbol.'
+    """
+    for i, joint in enumerate(chain.joints, 1):
+        cells = (joint.theta, joint.d, joint.a, joint.alpha)
+        if names := sorted({str(symbol) for cell in cells for symbol in getattr(cell, "free_symbols", ())}):
+            return (
+                f"row {i} holds {listed(names)}: besides the variable of its own joint, q{i}, it should hold numbers "
+                "only, and no other symbol."
+            )
+    return "base and tool should hold numbers only, and no symbol."
+
+
 def _odd_table(form: Form, table: Mapping[str, Any]) -> str:
     from dhlib.chain import Chain
     from dhlib.table import DEFAULT_COLUMNS
@@ -156,7 +176,7 @@ def _odd_table(form: Form, table: Mapping[str, Any]) -> str:
     try:
         chain = Chain.from_table(table["rows"], columns, letters, convention)
         if chain.is_symbolic:
-            raise DHError("besides the variable of its own joint a row should hold numbers only, and no other symbol.")
+            raise DHError(other_symbols(chain))
     except DHError as error:
         return f"{str(error)[:1].upper()}{str(error)[1:]}"
     if convention != form["convention"]:

@@ -45,7 +45,7 @@ class Refused(Exception):
     """A reading is not what an honest reader of answers makes."""
 
 
-def mark(part: Part, reading: Any, earlier: Mapping[str, Earlier] | None = None, reveal: bool = True) -> Mark:
+def mark(part: Part, reading: Any, earlier: Mapping[str, Earlier] | None = None) -> Mark:
     """Judge a reading of one part.
 
     Parameters
@@ -55,8 +55,6 @@ def mark(part: Part, reading: Any, earlier: Mapping[str, Earlier] | None = None,
         What `answers.read_answer` made; anything else is refused in words.
     earlier : mapping of str to Earlier, optional
         Answers to earlier parts: what follows from a wrong one is not punished again.
-    reveal : bool
-        Whether the verdict on a table may state the number that is expected; not in an assigned edition.
 
     Returns
     -------
@@ -69,10 +67,10 @@ def mark(part: Part, reading: Any, earlier: Mapping[str, Earlier] | None = None,
     >>> print(mark(part, {"choice": "p_z"}))
     slip: cannot be read. It should be one of n_x, n_y, n_z, in quotation marks.
     """
-    return judge(part, reading, earlier or {}, reveal).mark
+    return judge(part, reading, earlier or {}).mark
 
 
-def judge(part: Part, reading: Any, earlier: Mapping[str, Earlier], reveal: bool = True) -> Earlier:
+def judge(part: Part, reading: Any, earlier: Mapping[str, Earlier]) -> Earlier:
     """Judge a reading, and keep its values for the parts that follow from it."""
     if not isinstance(reading, dict):
         reading = {"fault": "refused"}
@@ -87,7 +85,7 @@ def judge(part: Part, reading: Any, earlier: Mapping[str, Earlier], reveal: bool
             case Choice():
                 return Earlier(_judge_choice(part, part.asks, reading), None)
             case Table():
-                return Earlier(judge_table(part, part.asks, _table(reading), reveal), None)
+                return Earlier(judge_table(part, part.asks, _table(reading)), None)
             case Frames():
                 (frames,) = _values(reading, 1, (part.asks.count, 4, 4))
                 return Earlier(judge_frames(part, part.asks, frames), None)
@@ -104,8 +102,6 @@ class Marker:
     Parameters
     ----------
     exercise : Exercise
-    reveal : bool
-        Whether the verdict on a table may state the number that is expected.
 
     Examples
     --------
@@ -114,15 +110,14 @@ class Marker:
     'Put your answer in place of the three dots.'
     """
 
-    def __init__(self, exercise: Exercise, reveal: bool = True) -> None:
+    def __init__(self, exercise: Exercise) -> None:
         self.exercise = exercise
-        self.reveal = reveal
         self._earlier: dict[str, Earlier] = {}
 
     def mark(self, part_id: str, reading: Any) -> Mark:
         """Mark one answer; raises DHError if there is no such part."""
         part = self.exercise.part(part_id)
-        judged = judge(part, reading, self._earlier, self.reveal)
+        judged = judge(part, reading, self._earlier)
         self._earlier[part.id] = judged
         return judged.mark
 
@@ -255,12 +250,12 @@ def _judge_values(part: Part, asks: Valued, values: FloatArray, earlier: Mapping
     slip = name_one([slip for slip, told in would_have_given(part) if _explains(told, values, right, asks)])
     if slip:
         return make_mark(part, WRONG, slip.says, slip.misconception.credit, slip.misconception)
-    if asks.shape == (4, 4) and (fault := improper(values)):
-        return make_mark(part, WRONG, fault, known=KNOWN["improper"])
     if isinstance(asks, Numbers) and agree(values, right, 10 * asks.tolerances):
         says = f"The values are close, but further off than {asks.tolerance:g}"
         says += f" (lengths: {asks.length_tolerance:g})" if asks.shape == (4, 4) else ""
         return make_mark(part, NEARLY, f"{says}. Round only at the end.", COARSE)
+    if asks.shape == (4, 4) and (fault := improper(values)):
+        return make_mark(part, WRONG, fault, known=KNOWN["improper"])
     return make_mark(part, WRONG, describe(asks, values, right, part.chain.unit))
 
 

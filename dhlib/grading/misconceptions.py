@@ -80,10 +80,10 @@ KNOWN = {
         Misconception(5, "parallel", "where d stands along parallel axes", "sec-placing-parallel", 1.0),
         Misconception(6, "a_and_d", "which length is a and which is d", "sec-classic-parameters",
                       modified="sec-modified-parameters"),
-        Misconception(7, "sign", "the sign of a or α", "sec-classic-trap-sign", 0.5, "sec-modified-parameters"),
+        Misconception(7, "sign", "the sign of a, d or α", "sec-classic-trap-sign", 0.5, "sec-modified-parameters"),
         Misconception(8, "ends", "base and tool, and on which side they stand", "sec-base-and-tool", 0.5),
         Misconception(9, "degrees", "degrees and radians", "sec-trap-degrees", 0.5),
-        Misconception(10, "unit", "the unit of length", "sec-classic-parameters", 0.75, "sec-modified-parameters"),
+        Misconception(10, "unit", "the unit of length", "sec-bt-trap-units", 0.75),
         Misconception(11, "reverse", "the order of the product", "sec-trap-order"),
         Misconception(12, "transpose", "rows and columns, and which frame is seen from which", "sec-trap-rows", 0.5),
         Misconception(13, "joint_kind", "which parameter the joint moves", "sec-prismatic-row"),
@@ -383,10 +383,10 @@ def name_one(fitting: list[Slip]) -> Slip | None:
         return next(iter(by_key.values()), None)
     slips = sorted(by_key.values(), key=lambda slip: slip.misconception.number)
     known = [slip.misconception for slip in slips]
-    checks = "; or ".join(each.brief for each in known[:3])
+    checks = ", or ".join(each.brief for each in known[:3])
     key = "+".join(each.key for each in known)
     several = replace(known[0], number=0, key=key, brief=checks, credit=min(each.credit for each in known))
-    return Slip(several, f"More than one slip leads to this very answer. Check {checks}.")
+    return Slip(several, f"Several slips lead to this very answer, so look at each of these: {checks}.")
 
 
 def told_frames(chain: Chain, convention: str) -> Iterator[tuple[Slip, FloatArray]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dhlib.grading.forms import Formula, Valued
+from dhlib.grading.forms import Formula, Function, Valued
 from dhlib.scalars import FloatArray
 
 COLUMNS = ("n", "o", "a", "p")
@@ -53,6 +53,8 @@ def describe(asks: Valued, values: FloatArray, right: FloatArray, unit: str) -> 
     where = ""
     if len(values) > 1 and (fine := int(np.sum(~off.reshape(len(values), -1).any(axis=1)))) > 0:
         where = f" At {fine} of {len(values)} sets of joint angles tried it is right, at the others it is not."
+    if isinstance(asks, Function) and _deaf(asks, values, right):
+        return "It gives the same whatever values it is called with. Does it use its own arguments, and all of them?"
     if asks.each:
         rows = [str(k + 1) for k in np.flatnonzero(off.reshape(len(off), off.shape[1], -1).any(axis=(0, 2)))]
         return f"{asks.each.capitalize()} {listed(rows)} {'is' if len(rows) == 1 else 'are'} not right yet.{where}"
@@ -65,7 +67,18 @@ def describe(asks: Valued, values: FloatArray, right: FloatArray, unit: str) -> 
             return "The value is right but for its sign."
         return f"The value differs from the right one.{where}"
     wrong = [str(k + 1) for k in np.flatnonzero(off.reshape(len(off), len(off[0]), -1).any(axis=(0, 2)))]
-    return f"Entry {', '.join(wrong)} differs from the right one.{where}"
+    entries = f"Entries {listed(wrong)} differ" if len(wrong) > 1 else f"Entry {wrong[0]} differs"
+    return f"{entries} from what is asked for.{where}"
+
+
+def _deaf(asks: Function, values: FloatArray, right: FloatArray) -> bool:
+    """Whether calls that differ in their arrays only give the same, while they should not."""
+    groups: dict[tuple[object, ...], list[int]] = {}
+    for k, call in enumerate(asks.calls):
+        groups.setdefault(tuple(argument for argument in call if np.ndim(argument) == 0), []).append(k)
+    several = [group for group in groups.values() if len(group) > 1]
+    same = all(np.all(np.ptp(values[group], axis=0) <= 1e-9) for group in several)
+    return bool(several) and same and any(np.any(np.ptp(right[group], axis=0) > 1e-6) for group in several)
 
 
 def _describe_pose(values: FloatArray, right: FloatArray, off: NDArray[np.bool_], unit: str) -> str:
@@ -81,7 +94,10 @@ def _describe_pose(values: FloatArray, right: FloatArray, off: NDArray[np.bool_]
     if fine:
         right_ones = f"Column{'s' if len(fine) > 1 else ''} {listed(fine)} {'are' if len(fine) > 1 else 'is'} right"
         return f"{right_ones}; {listed(wrong)} {'are' if len(wrong) > 1 else 'is'} not."
-    return "Neither the rotation nor the position is right yet. Compare your link matrices one by one, from the base."
+    return (
+        "This is a pose, but not the one asked for: all four columns differ. Multiply its factors one at a time, from "
+        "the left: which is the first whose result you cannot explain?"
+    )
 
 
 def listed(names: list[str]) -> str:

@@ -76,6 +76,9 @@ CHAPTERS = {
         "sec-quickshot-tables": "The same arm, other tables",
         "sec-trap-zero-only": "Tested at zero only",
     },
+    "Base, tool and back": {
+        "sec-bt-trap-units": "A tool in millimetres",
+    },
     "PUMA 560: one arm, five tables": {
         "sec-puma560-frames": "Six axes, six frames",
         "sec-puma560-rows": "The table, row by row",

@@ -16,6 +16,7 @@ import numpy as np
 from dhlib.chain import Chain
 from dhlib.errors import DHError
 from dhlib.grading.exercise import Part
+from dhlib.grading.formal import other_symbols
 from dhlib.grading.forms import Table
 from dhlib.grading.marks import NEARLY, RIGHT, UNREADABLE, WRONG, Mark, make_mark
 from dhlib.grading.misconceptions import KNOWN, OTHER, TRAP, Slip, name_one, retellings
@@ -36,7 +37,7 @@ FACTORS = {1000.0: "a thousand times too small", 0.001: "a thousand times too la
            100.0: "a hundred times too small", 0.01: "a hundred times too large"}  # fmt: skip
 
 
-def judge_table(part: Part, asks: Table, table: Rows, reveal: bool = True) -> Mark:
+def judge_table(part: Part, asks: Table, table: Rows) -> Mark:
     """Judge rows that were validated as numbers and text.
 
     Parameters
@@ -45,8 +46,6 @@ def judge_table(part: Part, asks: Table, table: Rows, reveal: bool = True) -> Ma
     asks : Table
     table : mapping
         rows, columns (or None), convention (or ``""``), and base and tool where the answer brought them.
-    reveal : bool
-        Whether to state the number that is expected, where nothing better can be said.
     """
     reference = part.chain.to_classic() if asks.convention == "classic" else part.chain.to_modified()
     degrees = False
@@ -69,7 +68,7 @@ def judge_table(part: Part, asks: Table, table: Rows, reveal: bool = True) -> Ma
         return _with_degrees(part, answer, reference)
     if answer.convention != asks.convention:
         return _other_convention(part, asks, answer, reference)
-    return climb_down(part, asks, answer, reference, reveal)
+    return climb_down(part, asks, answer, reference)
 
 
 def read_chain(table: Rows, asks: Table, reference: Chain, degrees: bool = False) -> Chain:
@@ -100,7 +99,7 @@ def read_chain(table: Rows, asks: Table, reference: Chain, degrees: bool = False
             raise error from None
     if chain.is_symbolic:
         _refuse_other_columns(table, read, convention)
-        raise DHError("besides the variable of its own joint a row should hold numbers only, and no other symbol.")
+        raise DHError(other_symbols(chain))
     return chain
 
 
@@ -119,6 +118,13 @@ def _refuse_other_columns(table: Rows, read: Callable[[str, str], Chain], conven
     if not table["columns"] and _reads(read, OTHER[convention]):
         asked, other = (", ".join(DEFAULT_COLUMNS[name]) for name in (convention, OTHER[convention]))
         raise DHError(f"the columns seem to stand as {other}; asked for is {asked}.") from None
+    names = DEFAULT_COLUMNS[convention]
+    held = {k for row in table["rows"] for k, cell in enumerate(row) if isinstance(cell, str)}
+    if not table["columns"] and len(held) == 1 and (k := held.pop()) < len(names) and names[k] not in ("theta", "d"):
+        raise DHError(
+            f"the joint variables stand in column {k + 1}, which is that of {names[k]}; "
+            f"the columns asked for are {', '.join(names)}."
+        ) from None
 
 
 def _reads(read: Callable[[str, str], Chain], convention: str) -> bool:
@@ -130,7 +136,7 @@ def _reads(read: Callable[[str, str], Chain], convention: str) -> bool:
     return True
 
 
-def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain, reveal: bool = True) -> Mark:
+def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain) -> Mark:
     """Rung by rung, what the answer is to the reference."""
     if _same_pose(answer, reference):
         return make_mark(part, RIGHT)
@@ -139,7 +145,7 @@ def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain, reveal:
     told_chains = [(slip, told) for slip, told in told_chains if not _is(reference, told)]
     slip = name_one([slip for slip, told in told_chains if _is(answer, told)])
     if verdict:
-        return _same_arm(part, asks, verdict, reference, slip, reveal)
+        return _same_arm(part, asks, verdict, reference, slip)
     if verdict.mirror:
         says = "This is the mirror image of the arm: the sign of an a, an α or a d is turned."
         known = slip.misconception if slip else KNOWN["sign"]
@@ -157,7 +163,7 @@ def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain, reveal:
             return make_mark(part, NEARLY, says, known.credit, known)
     if slip:
         return make_mark(part, WRONG, slip.says, slip.misconception.credit, slip.misconception)
-    if reveal or verdict.finding == verdict.reason:
+    if verdict.finding == verdict.reason:
         return make_mark(part, WRONG, _sentence(verdict.reason))
     return make_mark(part, WRONG, _sentence(f"{verdict.finding}; by the task it is not"))
 
@@ -178,7 +184,7 @@ def closest(asks: Table, answer: Chain, reference: Chain) -> Sameness:
     return verdict
 
 
-def _same_arm(part: Part, asks: Table, verdict: Sameness, reference: Chain, slip: Slip | None, reveal: bool) -> Mark:
+def _same_arm(part: Part, asks: Table, verdict: Sameness, reference: Chain, slip: Slip | None) -> Mark:
     """The same arm, with other ends, zeros or senses: right where the task leaves them free."""
     turned = [i for i, sign in enumerate(verdict.signs, 1) if sign < 0]
     shifted = [
@@ -190,11 +196,12 @@ def _same_arm(part: Part, asks: Table, verdict: Sameness, reference: Chain, slip
     if moved:
         distance = float(np.linalg.norm(ends[moved[0]][:3, 3]))
         far = distance > TOLERANCE * reference.reach
-        away = f"{distance:.4g} {reference.unit} away" if reveal else "elsewhere"
-        how = f"its origin is {away}" if far else "it is turned"
+        how = f"its origin is {distance:.4g} {reference.unit} away" if far else "it is turned"
         them = "it" if len(moved) == 1 else "them"
-        says = f"with this table {' and '.join(moved)} would not be where the task puts {them}"
-        says = f"{slip.says} The axes would fit, but {says}." if slip else f"The axes fit, but {says}: {how}."
+        where = f"would not be where the task puts {them}"
+        says = f"The axes fit, but with this table {' and '.join(moved)} {where}: {how}."
+        if slip:
+            says = f"{slip.says} As it stands, {' and '.join(moved)} {where}; the rest fits."
         return make_mark(part, NEARLY, says, CREDIT["ends"], slip.misconception if slip else KNOWN["ends"])
     if turned and "senses" not in asks.free:
         q = f"q{turned[0]}"

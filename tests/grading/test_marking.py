@@ -365,3 +365,34 @@ def test_a_choice_with_bad_reasons_is_refused():
     for reasons in ({"a": "no."}, {"no": ""}, {}):
         with pytest.raises(ValueError, match="reason"):
             reasoned("w", "W", "no", {"no": "so."}, reasons, "")
+
+
+@pytest.mark.parametrize(
+    ("part", "slip", "words"),
+    [
+        ("T4", lambda v: v["T4"].round(2), "Round only at the end"),
+        ("T4", lambda v: np.round(v["T4"]), "the columns of a rotation are unit vectors"),
+        ("link", lambda v: lambda i, q: v["link"](i, v["q"]), "It gives the same whatever values it is called with"),
+        ("link", lambda v: lambda i, q: v["link"](i % 4 + 1, q), "all four columns differ"),
+        ("link", lambda v: lambda i, q: [v["A1"], v["A2"], v["A3"], v["A4"]][i], "the items of a list from 0"),
+        ("frames", lambda v: v["frames"][:4], "frames has 4 matrices of 4 by 4; a list of 5"),
+    ],
+)
+def test_what_students_do(judge, solved, part, slip, words):
+    got = judge(part, slip(solved))
+    assert words in got.message, got
+
+
+def test_entries_are_named_in_the_plural():
+    part = load_exercise("puma560").part("p")
+    got = mark(part, read_answer(part.asks.request(), [0, 0, sp.Symbol("S1")]))
+    assert got.message == "Entries 1, 2 and 3 differ from what is asked for."
+
+
+@pytest.mark.parametrize(("part", "n"), [("table2_modified", 2), ("table3_modified", 3)])
+def test_a_length_left_in_its_row_is_named(part, n):
+    part = load_exercise("planar").part(part)
+    got = mark(part, read_answer(part.asks.request(), [[0, length, f"theta{i}", 0] for i, length in
+                                                      enumerate((260, 190, 110)[:n], 1)]))  # fmt: skip
+    assert (got.misconception, got.section) == ("row", "sec-modified-trap-row")
+    assert got.message.startswith("Row i holds the length of link i")

@@ -157,7 +157,7 @@ def test_traps_of_the_task_come_first(judge, solved, key):
 def test_where_two_fit_both_are_said(judge, arm, solved):
     got = judge("A4", arm.A(4, -solved["q"]))
     assert got.misconception == "sense+transpose"
-    assert got.message.startswith("More than one slip leads to this very answer. Check")
+    assert got.message.startswith("Several slips lead to this very answer, so look at each of these: the sense")
 
 
 def test_every_sentence_points_into_the_book(every):
