@@ -35,7 +35,7 @@ def test_every_misconception_is_named_and_every_right_answer_known(every, result
 
 
 @pytest.mark.parametrize(
-    "name", ["axes_to_table", "convert", "pa10_6c", "pa10_7c", "puma560", "quickshot", "scara", "stanford"]
+    "name", ["axes_to_table", "convert", "pa10_6c", "pa10_7c", "puma560", "quickshot", "same_arm", "scara", "stanford"]
 )
 def test_misconceptions_are_named_with_a_students_own_numbers_too(name):
     """By value, since that is what other numbers change: none passes, and as many are told exactly."""

@@ -30,7 +30,7 @@ def tables():
     notebook = json.loads((ROOT / "solutions" / "same_arm.ipynb").read_text(encoding="utf-8"))
     names = {}
     for cell in notebook["cells"]:
-        if cell["metadata"]["dh"]["role"] == "setup":
+        if cell["cell_type"] == "code" and cell["metadata"]["dh"]["role"] in ("setup", "given"):
             exec("".join(cell["source"]), names)  # our own notebook
     return names
 
