@@ -50,9 +50,7 @@ def describe(asks: Valued, values: FloatArray, right: FloatArray, unit: str) -> 
     off = np.where(np.isfinite(values), np.abs(values - right), np.inf) > tolerances
     if isinstance(asks, Formula) and np.all(np.ptp(values, axis=0) == 0) and np.any(np.ptp(right, axis=0) > 0):
         return f"This holds no joint angle: leave {', '.join(asks.symbols)} as symbols."
-    where = ""
-    if len(values) > 1 and (fine := int(np.sum(~off.reshape(len(values), -1).any(axis=1)))) > 0:
-        where = f" At {fine} of {len(values)} sets of joint angles tried it is right, at the others it is not."
+    where = _where(asks, [not at.any() for at in off]) if len(values) > 1 else ""
     if isinstance(asks, Function) and _deaf(asks, values, right):
         return "It gives the same whatever values it is called with. Does it use its own arguments, and all of them?"
     if asks.each:
@@ -69,6 +67,21 @@ def describe(asks: Valued, values: FloatArray, right: FloatArray, unit: str) -> 
     wrong = [str(k + 1) for k in np.flatnonzero(off.reshape(len(off), len(off[0]), -1).any(axis=(0, 2)))]
     entries = f"Entries {listed(wrong)} differ" if len(wrong) > 1 else f"Entry {wrong[0]} differs"
     return f"{entries} from what is asked for.{where}"
+
+
+def _where(asks: Valued, fine: list[bool]) -> str:
+    """Say at which of several probes values are right, if they are at some."""
+    if not any(fine):
+        return ""
+    if not isinstance(asks, Function):
+        return f" At {sum(fine)} of {len(fine)} sets of joint angles tried it is right, at the others it is not."
+    numbers = [call[0] for call in asks.calls if isinstance(call[0], int)]
+    if len(numbers) == len(fine):
+        wrong = sorted({i for i, right in zip(numbers, fine, strict=True) if not right})
+        if good := [str(i) for i in sorted(set(numbers)) if i not in wrong]:
+            name = asks.signature.partition("(")[2].partition(",")[0].rstrip(")")
+            return f" It is right for {name} = {listed(good)}, but not for {name} = {listed(list(map(str, wrong)))}."
+    return f" In {sum(fine)} of {len(fine)} calls it is right, in the others it is not."
 
 
 def _deaf(asks: Function, values: FloatArray, right: FloatArray) -> bool:

@@ -375,12 +375,30 @@ def test_a_choice_with_bad_reasons_is_refused():
         ("link", lambda v: lambda i, q: v["link"](i, v["q"]), "It gives the same whatever values it is called with"),
         ("link", lambda v: lambda i, q: v["link"](i % 4 + 1, q), "all four columns differ"),
         ("link", lambda v: lambda i, q: [v["A1"], v["A2"], v["A3"], v["A4"]][i], "the items of a list from 0"),
+        ("link", lambda v: lambda i, q: v["link"](i, q) * (1 if i != 3 else [[0.5], [1], [1], [1]]), "Column n"),
+        (
+            "link",
+            lambda v: lambda i, q: v["link"](i, q) if i != 3 else v["link"](2, q),
+            "It is right for i = 1, 2 and 4, but not for i = 3.",
+        ),
         ("frames", lambda v: v["frames"][:4], "frames has 4 matrices of 4 by 4; a list of 5"),
     ],
 )
 def test_what_students_do(judge, solved, part, slip, words):
     got = judge(part, slip(solved))
     assert words in got.message, got
+
+
+def test_a_function_that_is_right_now_and_then_is_told_so():
+    part = load_exercise("transforms").part("invert")
+
+    def good(T):
+        return bool(np.asarray(T)[0, 3] > 0)
+
+    right = [good(T) for (T,) in part.asks.calls]
+    assert 0 < sum(right) < len(right)
+    got = mark(part, read_answer(part.asks.request(), lambda T: np.linalg.inv(T) if good(T) else np.eye(4)))
+    assert f"In {sum(right)} of {len(right)} calls it is right" in got.message
 
 
 def test_entries_are_named_in_the_plural():
