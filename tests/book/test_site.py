@@ -46,7 +46,7 @@ def unexpected(files: set[str], pages: dict[str, Path]) -> set[str]:
     static = re.compile(
         r"_static/.*\.(css|js|svg|png|woff2|LICENSE\.txt)|_images/[\w.-]+\.(svg|png)|_downloads/[0-9a-f]{32}/[\w.-]+"
         r"|live/(link|robot|place|space)\.js|icons/icon(-192\.png|-512\.png|-masked-512\.png|\.svg)"
-        r"|run/(cells|editor|exercise|progress)\.js|run/worker\.mjs|run/book\.zip|run/mathjax/[\w/]+\.js|run/lock-\w+\.json"
+        r"|run/(cells|editor|exercise|progress)\.js|run/worker\.mjs|run/book\.zip|run/mathjax/[\w/-]+\.js|run/lock-\w+\.json"
         r"|run/(numpy|sympy|mpmath|dhlib)-[\w.-]+\.whl|run/pyodide-[\d.]+/(pyodide\S*\.(mjs|wasm)|python_stdlib\.zip)"
         r"|run/exercises/\w+\.(ipynb|py)"
     )
