@@ -39,45 +39,64 @@ arm = robots.quickshot()
 q = np.deg2rad([30, -50, 70, 20])
 Z = Tx(300) @ Ty(-150) @ Tz(720) @ Rz(np.pi / 2)
 E = Tz(90) @ Rz(np.pi / 2) @ Rx(-np.pi / 6)
+short, written = arm.symbolic(short=True), arm.symbolic()
+
+
+class Own:
+    # The arm built without dhlib, which is closed for most parts.
+
+    def A(self, i, q):
+        d, a, sine = ((100, 20, -1), (0, 160, 0), (28, 0, 1), (250, 0, 0))[i - 1]
+        cosine, m = 1 - abs(sine), sp if any(isinstance(angle, sp.Basic) for angle in q) else np
+        c, s = m.cos(q[i - 1]), m.sin(q[i - 1])
+        rows = [[c, -s * cosine, s * sine, a * c], [s, c * cosine, -c * sine, a * s]]
+        rows += [[0, sine, cosine, d], [0, 0, 0, 1]]
+        return sp.Matrix(rows) if m is sp else np.array(rows)
+
+    def fk(self, q):
+        return self.A(1, q) @ self.A(2, q) @ self.A(3, q) @ self.A(4, q)
+
+
+own = Own()
 """
 HANDED_IN = [
     {  # right, by other routes
         "frames": "frames = {i: frame for i, frame in enumerate(arm.frames([0, 0, 0, 0]))}",
         "table": "table = arm",
-        "A1": "A1 = arm.A(1, q).tolist()",
-        "A2": "A2 = sp.Matrix(arm.A(2, q))",
-        "A3": "A3 = np.matrix(arm.A(3, q))",
-        "A4": "A4 = tuple(map(tuple, arm.A(4, q).round(3)))",
-        "A1_sym": "A1_sym = arm.A(1, [theta1, theta2, theta3, theta4]).tolist()",
-        "A2_sym": "A2_sym = arm.A(2, sp.symbols('q1:5', real=True)).applyfunc(lambda e: e.rewrite(sp.exp))",
-        "A3_sym": "A3_sym = arm.A(3, [theta1, theta2, theta3, theta4]).evalf()",
-        "A4_sym": "A4_sym = arm.A(4, [theta1, theta2, theta3, theta4]).applyfunc(lambda e: e.rewrite(sp.tan))",
-        "link": "link = arm.A",
-        "T4": "T4 = arm.fk(q)",
-        "T4_quarter": "T4_quarter = arm.fk(np.pi / 2 * np.array([1, -1, 2, -1])).round(0)",
-        "T4_sym": "T4_sym = arm.symbolic(short=True)",
+        "A1": "A1 = own.A(1, q).tolist()",
+        "A2": "A2 = sp.Matrix(own.A(2, q))",
+        "A3": "A3 = np.matrix(own.A(3, q))",
+        "A4": "A4 = tuple(map(tuple, own.A(4, q).round(3)))",
+        "A1_sym": "A1_sym = own.A(1, [theta1, theta2, theta3, theta4]).tolist()",
+        "A2_sym": "A2_sym = own.A(2, sp.symbols('q1:5', real=True)).applyfunc(lambda e: e.rewrite(sp.exp))",
+        "A3_sym": "A3_sym = own.A(3, [theta1, theta2, theta3, theta4]).evalf()",
+        "A4_sym": "A4_sym = own.A(4, [theta1, theta2, theta3, theta4]).applyfunc(lambda e: e.rewrite(sp.tan))",
+        "link": "link = own.A",
+        "T4": "T4 = own.fk(q)",
+        "T4_quarter": "T4_quarter = own.fk(np.pi / 2 * np.array([1, -1, 2, -1])).round(0)",
+        "T4_sym": "T4_sym = short",
         "slip": "slip = 'N_y'",
-        "n_y": "n_y = sp.expand_trig(arm.symbolic()[1, 0])",
+        "n_y": "n_y = sp.expand_trig(written[1, 0])",
         "X": "X = Z @ T4 @ E",
-        "T4_back": "T4_back = arm.fk(np.deg2rad([40, 25, -65, 110]))",
+        "T4_back": "T4_back = own.fk(np.deg2rad([40, 25, -65, 110]))",
     },
     {  # wrong in known ways, with a link whose error is carried on
         "frames": "frames = list(robots.quickshot('modified').frames([0, 0, 0, 0]))",
         "table": "table = [[theta1, 100, 20, -90], [theta2, 0, 160, 0], [theta3, 28, 0, 90], [theta4, 250, 0, 0]]",
-        "A1": "A1 = arm.to_modified().A(1, q)",
-        "A2": "A2 = arm.A(2, -q)",
-        "A3": "A3 = arm.A(3, q)",
-        "A4": "A4 = arm.A(4, q)",
-        "A1_sym": "A1_sym = arm.A(1, [theta1, theta2, theta3, theta4]).T",
-        "A2_sym": "A2_sym = sp.Matrix(arm.A(2, q))",
-        "A3_sym": "A3_sym = arm.A(3, [theta1, theta2, theta3, theta4]).subs(theta3, theta2)",
+        "A1": "c, s = np.cos(q[0]), np.sin(q[0])\nA1 = [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 100], [0, 0, 0, 1]]",
+        "A2": "A2 = own.A(2, -q)",
+        "A3": "A3 = own.A(3, q)",
+        "A4": "A4 = own.A(4, q)",
+        "A1_sym": "A1_sym = own.A(1, [theta1, theta2, theta3, theta4]).T",
+        "A2_sym": "A2_sym = sp.Matrix(own.A(2, q))",
+        "A3_sym": "A3_sym = own.A(3, [theta1, theta2, theta3, theta4]).subs(theta3, theta2)",
         "A4_sym": "A4_sym = sp.Matrix([[sp.Symbol('r')] * 4] * 4)",
-        "link": "def link(i, q):\n    return arm.A(i, np.rad2deg(q))",
+        "link": "def link(i, q):\n    return own.A(i, np.rad2deg(q))",
         "T4": "T4 = A1 @ A2 @ A3 @ A4",
-        "T4_quarter": "T4_quarter = arm.fk([0, 0, 0, 0])",
-        "T4_sym": "T4_sym = sp.Matrix(arm.fk([0, 0, 0, 0]))",
+        "T4_quarter": "T4_quarter = own.fk([0, 0, 0, 0])",
+        "T4_sym": "T4_sym = sp.Matrix(own.fk([0, 0, 0, 0]))",
         "slip": "slip = 'n_x'",
-        "n_y": "n_y = -sp.expand_trig(arm.symbolic()[1, 0])",
+        "n_y": "n_y = -sp.expand_trig(written[1, 0])",
         "X": "X = T4",
         "T4_back": "T4_back = X_measured",
     },
@@ -93,7 +112,7 @@ HANDED_IN = [
         "A3_sym": "A3_sym = 'cos(theta1)'",
         "A4_sym": "A4_sym = sp.eye(4) * sp.I",
         "link": "def link(q):\n    return q",
-        "T4": "T4 = arm.fk(q).round(2)",
+        "T4": "T4 = own.fk(q).round(2)",
         "T4_quarter": "T4_quarter = arm",
         "T4_sym": "T4_sym = {1: 2}",
         "slip": "slip = 'n_w'",
