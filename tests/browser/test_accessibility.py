@@ -45,7 +45,8 @@ def open_page(browser: Any, address: str, width: int) -> Any:
     page.add_style_tag(content=STILL)
     page.add_script_tag(path=str(AXE))
     page.evaluate(OPEN_FOLDS)
-    page.evaluate("scrollTo(0, document.body.scrollHeight)")
+    # A section is laid out when a reader comes near (sections.js); here all of them are come to at once.
+    page.evaluate("document.documentElement.classList.add('whole'); scrollTo(0, document.body.scrollHeight)")
     page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     return page
 

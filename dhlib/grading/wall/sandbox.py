@@ -275,7 +275,11 @@ class Run:
             for fd in (fd for fd in ready if fd in self.heard):
                 self._hear(fd)
             if control.fileno() in ready:
-                if control.recv(LONGEST_MESSAGE) != json.dumps({"ended": self.box.jobs}).encode():
+                try:
+                    said = control.recv(LONGEST_MESSAGE)
+                except OSError:  # the box is gone
+                    raise Crashed from None
+                if said != json.dumps({"ended": self.box.jobs}).encode():
                     raise Crashed
                 for fd in [*self.heard]:  # nobody is left who could write, so what is there is all there will be
                     while self._hear(fd):
