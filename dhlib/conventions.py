@@ -85,7 +85,7 @@ def modified(alpha: Scalar, a: Scalar, theta: Scalar, d: Scalar) -> Pose:
 
     Notes
     -----
-    J. J. Craig, *Introduction to Robotics: Mechanics and Control*, 1986, equation 3.6.
+    John J. Craig, *Introduction to Robotics: Mechanics and Control*, 1986, equation 3.6.
 
     Examples
     --------

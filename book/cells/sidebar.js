@@ -8,8 +8,8 @@ addEventListener("DOMContentLoaded", () => {
       return; // a browser that keeps nothing
     }
     for (const [name, { parts, out_of: all }] of Object.entries(kept)) {
-      for (const link of document.querySelectorAll(`.bd-sidebar-primary a[href$="${CSS.escape(name)}.html"], .bd-sidebar-primary .current > a[href="#"]`)) {
-        if (link.getAttribute("href") === "#" && !location.pathname.endsWith(`/exercises/${name}.html`)) continue;
+      for (const link of document.querySelectorAll(".bd-sidebar-primary a[href]")) {
+        if (!link.pathname.endsWith(`/exercises/${name}.html`)) continue;  // not the solution of the same name
         let badge = link.querySelector(".dh-badge");
         if (!badge) {
           badge = document.createElement("span");

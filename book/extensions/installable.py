@@ -30,7 +30,8 @@ ICON = "icons/icon.svg"
 #: Name, size in pixels, and which part of it the drawing takes; a masked icon may lose its rim.
 PICTURES = (("icon-192.png", 192, 1.0), ("icon-512.png", 512, 1.0), ("icon-masked-512.png", 512, 0.7))
 
-KEPT = ("*.html", "*.js", MANIFEST, "_static/**/*", "_images/**/*", "live/*", "icons/*", "book/**/*", "exercises/**/*")
+PAGES = ("*.html", "book/**/*", "exercises/**/*", "solutions/**/*")
+KEPT = (*PAGES, "*.js", MANIFEST, "_static/**/*", "_images/**/*", "live/*", "icons/*")
 LARGEST = 1_000_000
 """Files beyond this many bytes are kept only when they were used."""
 DESCRIPTION = 155

@@ -91,7 +91,7 @@ def test_points_are_kept_and_shown(page: Any, address: str) -> None:
     other.goto(f"{address}/book/progress.html")
     row = other.locator(".dh-progress tr", has_text="link").first
     assert row.locator("td").nth(1).inner_text() in total
-    assert other.locator(f'.bd-sidebar-primary a[href$="{NAME}.html"] .dh-badge').count() == 1
+    assert other.locator(f'.bd-sidebar-primary a[href$="exercises/{NAME}.html"] .dh-badge').count() == 1
     other.close()
 
 
