@@ -30,6 +30,11 @@ const seen = (page) => page.evaluate(() => {
     height: figure.getBoundingClientRect().height,
   };
 });
+/** A figure is laid out when a reader comes near it. */
+const comeTo = async (page) => {
+  await page.$eval("dh-link, dh-robot, dh-place", (figure) => figure.scrollIntoView());
+  await page.waitForFunction('document.querySelector("dh-link, dh-robot, dh-place").shadowRoot.querySelector("svg .arrow")');
+};
 const ranges = (k) => `document.querySelector("dh-link, dh-robot, dh-place").shadowRoot.querySelectorAll("input[type=range]")[${k}]`;
 
 const VISITS = {
@@ -41,6 +46,7 @@ const VISITS = {
     return { found: (await page.$$("#search-results li a")).length };
   },
   "book/classic.html": async (page) => {
+    await comeTo(page);
     const first = await seen(page);
     await pressed(page, ranges(0), "End");
     const turned = await seen(page);
@@ -69,6 +75,7 @@ const VISITS = {
     return { first, round, moved: await seen(page), webgl: await page.evaluate('Boolean(document.querySelector("dh-robot").space)') };
   },
   "book/placing.html": async (page) => {
+    await comeTo(page);
     const first = await seen(page);
     await pressed(page, ranges(0), "ArrowRight", "ArrowRight");
     const slid = await seen(page);
