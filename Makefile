@@ -156,7 +156,8 @@ $(VENV_READY): $(UV_READY) requirements/dev.lock pyproject.toml
 	@echo '── the locked environment, in .venv ──'
 	@$(RUN) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
 		$(UV) venv --clear --python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" .venv
-	$(UV) pip sync --python .venv --require-hashes requirements/dev.lock
+	@# Compiled at once: where Python is told to write no bytecode, each process would compile sympy again, for seconds.
+	$(UV) pip sync --python .venv --require-hashes --compile-bytecode requirements/dev.lock
 	$(UV) pip install --python .venv --quiet --no-deps --no-build-isolation --editable .
 	@rm -f .venv/ready-* && touch $@
 

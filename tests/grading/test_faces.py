@@ -124,7 +124,7 @@ HANDED_IN = [
 
 
 #: Exercises of which one hand-in is made each, right in a third of its parts, wrong in another, unreadable in the last.
-MIXED = ("axes_to_table", "convert", "one_link", "puma560", "same_arm", "scara", "stanford", "transforms")
+MIXED = ("axes_to_table", "convert", "one_link", "planar", "puma560", "same_arm", "scara", "stanford", "transforms")
 
 
 def wrong_answer(part):
