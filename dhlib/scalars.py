@@ -151,12 +151,15 @@ def cos_sin(angle: Scalar) -> tuple[Scalar, Scalar]:
         sympy = sys.modules["sympy"]
         return sympy.cos(angle), sympy.sin(angle)
     if isinstance(angle, np.ndarray):
-        cosine, sine = np.cos(angle), np.sin(angle)
-        cosine[np.abs(cosine) < ROUNDING] = 0.0
-        sine[np.abs(sine) < ROUNDING] = 0.0
-        return cosine, sine
+        return without_rounding(np.cos(angle)), without_rounding(np.sin(angle))
     c, s = math.cos(angle), math.sin(angle)
     return (0.0 if -ROUNDING < c < ROUNDING else c, 0.0 if -ROUNDING < s < ROUNDING else s)
+
+
+def without_rounding(values: FloatArray) -> FloatArray:
+    """Set to 0, in place, what is only the rounding of a quarter turn in an array of cosines or sines."""
+    values[np.abs(values) < ROUNDING] = 0.0
+    return values
 
 
 def turn_by_quarters(cosine: Scalar, sine: Scalar, quarters: int) -> tuple[Scalar, Scalar]:

@@ -21,7 +21,7 @@ import numpy as np
 import sympy
 
 from dhlib.chain import CHUNK, Chain
-from dhlib.scalars import exact, quarter_turns
+from dhlib.scalars import FloatArray, exact, quarter_turns, without_rounding
 from dhlib.transforms import Pose
 
 Fused = tuple[sympy.Expr, list[sympy.Expr], sympy.Expr, sympy.Expr]
@@ -91,6 +91,8 @@ def _turned(rows: list[list[sympy.Expr]], first: int, second: int, angle: sympy.
 
 def _times(factor: sympy.Expr, entry: sympy.Expr) -> sympy.Expr:
     """Multiply, with the sign of an all-negative sum drawn out: C1 (-S4 - C4) becomes -C1 (S4 + C4)."""
+    if factor == 0 or entry == 0:  # sympy would first find out whether the other one is finite, at great length
+        return sympy.Integer(0)
     if factor.is_Function and entry.is_Add and all(term.as_coeff_Mul()[0].is_negative for term in entry.args):
         return -(factor * -entry)
     return factor * entry
@@ -123,10 +125,23 @@ def _short_name(function: sympy.Expr) -> str:
 
 def compile_chain(chain: Chain) -> Callable[[Any], Pose]:
     """A function q → fk(q) from the symbolic form; see :meth:`Chain.compiled`."""
-    product = fused_product(chain)
-    entries = sympy.lambdify(joint_symbols(chain), list(product[:3, :]), modules="numpy", cse=True)
+    symbols = joint_symbols(chain)
+    # An offset of whole quarter turns is put into the formula, where it only swaps sines and cosines.
+    quarters = {
+        symbol: quarter_turns(float(joint.offset)) if joint.kind == "R" else None
+        for symbol, joint in zip(symbols, chain.joints, strict=True)
+    }
+    turned = {symbol: symbol + turns * sympy.pi / 2 for symbol, turns in quarters.items() if turns}
+    entries = sympy.lambdify(
+        symbols,
+        list(fused_product(chain)[:3, :].subs(turned)),
+        modules=[{"cos": _cosine, "sin": _sine}, "numpy"],
+        cse=_in_steps,
+    )
     signs = np.array([joint.sign for joint in chain.joints], dtype=float)
-    offsets = np.array([float(joint.offset) for joint in chain.joints])
+    offsets = np.array(
+        [0.0 if symbol in turned else float(joint.offset) for symbol, joint in zip(symbols, chain.joints, strict=True)]
+    )
     base, tool = (np.asarray(end, dtype=float) for end in (chain._own_base, chain.tool))
     identity = np.eye(4)
 
@@ -143,6 +158,48 @@ def compile_chain(chain: Chain) -> Callable[[Any], Pose]:
         poses = poses.reshape(*values.shape[:-1], 4, 4)
         if not np.array_equal(base, identity):
             poses = base @ poses
-        return poses if np.array_equal(tool, identity) else poses @ tool
+        if not np.array_equal(tool, identity):
+            poses = poses @ tool
+        return np.add(poses, 0.0, out=poses)  # turns -0.0 into 0.0
 
     return fk
+
+
+def _cosine(angle: FloatArray) -> FloatArray:
+    return without_rounding(np.cos(angle))
+
+
+def _sine(angle: FloatArray) -> FloatArray:
+    return without_rounding(np.sin(angle))
+
+
+def _in_steps(entries: list[sympy.Expr]) -> tuple[list[tuple[sympy.Symbol, sympy.Expr]], list[sympy.Expr]]:
+    """What is computed first, and the entries in terms of it, as :func:`sympy.cse` gives them.
+
+    The cosine and the sine of a sum of angles come from those of its terms: that is cheaper than another cosine, and
+    where all terms are quarter turns it leaves 0 and ±1, which the cosine of a rounded sum does not.
+    """
+    steps: list[tuple[sympy.Symbol, sympy.Expr]] = []
+    known: dict[sympy.Expr, tuple[sympy.Expr, sympy.Expr]] = {}
+
+    def named(*values: sympy.Expr) -> tuple[sympy.Expr, ...]:
+        names = tuple(sympy.Dummy() for _ in values)
+        steps.extend(zip(names, values, strict=True))
+        return names
+
+    def cosine_sine(terms: tuple[sympy.Expr, ...]) -> tuple[sympy.Expr, ...]:
+        angle = sympy.Add(*terms)
+        if angle not in known:
+            if len(terms) == 1:
+                known[angle] = named(sympy.cos(angle), sympy.sin(angle))
+            else:
+                (c, s), (c_last, s_last) = cosine_sine(terms[:-1]), cosine_sine(terms[-1:])
+                known[angle] = named(c * c_last - s * s_last, s * c_last + c * s_last)
+        return known[angle]
+
+    of_angles = {}
+    for function in sorted(sympy.Tuple(*entries).atoms(sympy.cos, sympy.sin), key=sympy.default_sort_key):
+        terms = sorted(sympy.Add.make_args(function.args[0]), key=sympy.default_sort_key)
+        of_angles[function] = cosine_sine(tuple(terms))[isinstance(function, sympy.sin)]
+    shared, short = sympy.cse([entry.xreplace(of_angles) for entry in entries])
+    return steps + shared, short

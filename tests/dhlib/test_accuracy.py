@@ -63,7 +63,7 @@ def test_quarter_turns_leave_no_crumbs(name):
     """At quarter turns every rotation entry is 0 or ±1, and no position is a rounding of 0."""
     chain = EVERY_ROBOT[name]
     q = np.random.default_rng(3).integers(-4, 5, (200, chain.n)) * (np.pi / 2)
-    for poses in (chain.fk(q), chain.frames(q), np.array([chain.fk(row) for row in q])):
+    for poses in (chain.fk(q), chain.frames(q), np.array([chain.fk(row) for row in q]), chain.compiled()(q)):
         assert np.all(np.isin(poses[..., :3, :3], [-1, 0, 1]))
         positions = np.abs(poses[..., :3, 3])
         assert not np.any((positions > 0) & (positions < 1e-12))
