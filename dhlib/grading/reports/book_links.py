@@ -5,21 +5,7 @@ from __future__ import annotations
 from urllib.parse import urlsplit
 
 from dhlib.errors import DHError
-from dhlib.grading.sections import CHAPTERS
-
-#: The page of each chapter; a test looks for each section in its source.
-PAGES = {
-    "Frames and homogeneous transforms": "transforms",
-    "The classic convention": "classic",
-    "Placing frames": "placing",
-    "The modified convention": "modified",
-    "Both side by side": "both",
-    "Quickshot: a worked arm": "quickshot",
-    "PUMA 560: one arm, five tables": "puma560",
-    "Mitsubishi PA10: seven joints and six": "pa10",
-    "Prismatic joints": "prismatic",
-    "From a data sheet or a URDF to a DH table": "data_sheet",
-}
+from dhlib.grading.sections import address
 
 
 def read_address(book: str) -> str:
@@ -51,17 +37,5 @@ def link(book: str, section: str) -> str:
     >>> link("", "sec-pose")
     ''
     """
-    if not book:
-        return ""
-    for chapter, sections in CHAPTERS.items():
-        if section in sections and chapter in PAGES:
-            return f"{book}/book/{PAGES[chapter]}.html#{section}"
-    return ""
-
-
-def named(section: str) -> tuple[str, str]:
-    """Heading of a section and title of its chapter; both empty for an unknown label."""
-    for chapter, sections in CHAPTERS.items():
-        if section in sections:
-            return sections[section], chapter
-    return "", ""
+    place = address(section)
+    return f"{book}/{place}" if book and place else ""

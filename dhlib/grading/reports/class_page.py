@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from dhlib.grading.reports import charts
-from dhlib.grading.reports.book_links import link, named
+from dhlib.grading.reports.book_links import link
 from dhlib.grading.reports.feedback import Find
 from dhlib.grading.reports.lecture import Cost, costs, heat, label
 from dhlib.grading.reports.pages import render
 from dhlib.grading.reports.records import Record, exercises_of
 from dhlib.grading.reports.similarity import RARE, alike, same_files
 from dhlib.grading.reports.statistics import FEW_FOR_CORRELATION, FEWEST, part_figures, unusual
+from dhlib.grading.sections import named
 
 #: Misconceptions that the next lecture should be about: more are not remembered.
 TO_SAY = 3

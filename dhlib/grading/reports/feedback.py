@@ -12,13 +12,14 @@ from markupsafe import Markup
 from dhlib.errors import DHError
 from dhlib.grading.exercise import Exercise, Part
 from dhlib.grading.marks import FOLLOWS, HEADLINES, NEARLY, OPEN, RIGHT, UNREADABLE, WRONG
-from dhlib.grading.reports.book_links import link, named
+from dhlib.grading.reports.book_links import link
 from dhlib.grading.reports.comments import signed
 from dhlib.grading.reports.pages import drawn, render
 from dhlib.grading.reports.picture import picture
 from dhlib.grading.reports.records import Answer, Record
 from dhlib.grading.reports.settings import Settings
 from dhlib.grading.reports.shape import Shown, show
+from dhlib.grading.sections import named
 
 #: Verdicts in black and white, for those who do not see the colours.
 SIGNS = {RIGHT: "✓", FOLLOWS: "✓", NEARLY: "≈", WRONG: "✗", OPEN: "○", UNREADABLE: "?"}
