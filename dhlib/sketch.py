@@ -84,7 +84,7 @@ def sketch(
     figure = draw(chain, q)
     scene = Scene(axis_length=0.17 * figure.size)
     if "links" in show:
-        _add_arm(scene, figure)
+        add_arm(scene, figure)
     if "joints" in show:
         for joint in figure.joints:
             scene.add_joint(joint, SYMBOL_LENGTH * figure.size, SYMBOL_RADIUS * figure.size)
@@ -572,7 +572,7 @@ def right_and_wrong(*, view: ViewAngles | None = None, width: float = WIDTH, tit
     )
 
 
-def _add_arm(scene: Scene, figure: Drawing) -> None:
+def add_arm(scene: Scene, figure: Drawing) -> None:
     """The bars of the arm, and a gripper where the tool stands clear of the last joint's symbol."""
     for start, end in figure.links:
         scene.add_segment(start, end, kind="body")

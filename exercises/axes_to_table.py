@@ -11,7 +11,9 @@ from dhlib.grading.course.sources import matrix, row
 from dhlib.grading.course.sources import number as number_as_source
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Frames, Function, Numbers, Table
+from dhlib.grading.pictures import add_axis
 from dhlib.grading.retelling import altered
+from dhlib.scene import Scene
 
 #: What leads from one axis to the next, and is not measured by every right placing; and what is.
 PLACED = {
@@ -185,6 +187,24 @@ def draw(lots):
         tilt=lots.one("tilt", SLOPES[1:]),
         tool=lots.one("tool", [0.1, 0.15, 0.175, 0.2]),
         stands=(lots.one("stands x", [0.15, 0.18, 0.22, 0.24, 0.26]), lots.one("stands y", [0.12, 0.14, 0.16])),
+    )
+
+
+def figure(given):
+    """The axes of K, where the page has them."""
+    size = max(given.hand_at)
+    scene = Scene(axis_length=0.2 * size)
+    scene.add_frame(np.eye(4), "0")
+    for i, (point, along) in enumerate(given.axes, 1):
+        add_axis(scene, point, along, f"axis {i}", 0.12 * size, 0.28 * size)
+        scene.add_point(point)
+    scene.add_point(given.hand_at, "O_5")
+    return scene.sketch(
+        "The joint axes of K at its zero pose, the points that they are given by, O5, and the world",
+        "Five lines with arrows, and the world frame at the foot of axis 1, which points up. Axis 2 points to the left "
+        "and axis 3, above it, to the right. Axis 4 meets axis 3 and slopes upwards and forward. Axis 5 slopes "
+        "forward too, and passes axis 4 at a distance. O5 lies on it.",
+        view=(-60, 22),
     )
 
 

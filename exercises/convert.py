@@ -9,6 +9,7 @@ from dhlib.grading.asking import choice, constant, pose, reasoned
 from dhlib.grading.course.sources import number, row
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Function, Numbers, Table
+from dhlib.grading.pictures import described
 
 
 @dataclass(frozen=True)
@@ -109,6 +110,17 @@ def draw(lots):
         measured_as=lots.one("measured", ["classic", "modified"]),
         first=((lots.one("first height", range(172, 228, 8)), f1, 90), *middle, (f2, f3, lots.one("end", [90, -90]))),
         equal=lots.one("equal", range(110, 190, 20)) + 5,
+    )
+
+
+def figure(given):
+    """Arm W, as its table has it."""
+    return described(
+        given.W,
+        "Arm W with joint 3 pushed out and all angles zero: its joint axes, and its frame {0}",
+        "Arm W: axis 1 is vertical. A link of the table leads from each of the four axes to the next. Joint 3 slides, "
+        "and is drawn as a block; the gripper is behind axis 4. Only frame 0 is drawn.",
+        q=(0, 0, 90, 0),
     )
 
 

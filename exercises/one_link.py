@@ -12,6 +12,9 @@ from dhlib.grading.course.sources import matrix as matrix_text
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Function, Numbers
 from dhlib.grading.misconceptions import retold
+from dhlib.grading.pictures import same_for_all
+from dhlib.scene import beside_each_other
+from dhlib.sketch import link as drawn_link
 
 CLASSIC, MODIFIED = ("theta", "d", "a", "alpha"), ("alpha", "a", "theta", "d")
 CALLS = [tuple(map(float, row)) for row in np.random.default_rng(5).uniform(-2.5, 2.5, (8, 4))]
@@ -89,6 +92,23 @@ def link(convention, names):
         return Chain([Revolute(d=row["d"], a=row["a"], alpha=row["alpha"])], convention, unit="mm")
 
     return chain_at
+
+
+@same_for_all
+def figure():
+    """One link by each convention, and what its four parameters measure."""
+    joint = Revolute(d=1.0, a=1.6, alpha=np.deg2rad(-55), offset=np.deg2rad(60))
+    pictures = [
+        drawn_link(Chain([joint], convention), 1, [0.0], names=("i-1", "i"), width=230)
+        for convention in ("classic", "modified")
+    ]
+    return beside_each_other(
+        pictures,
+        "A link by the classic convention and one by the modified: frames {i-1}, dashed, and {i}, and four parameters",
+        "Two pictures of frame i-1, dashed, frame i, and the way between them. On the left, classic: d along z of "
+        "frame i-1, then a along x of frame i. On the right, modified: a along x of frame i-1, then d along z of "
+        "frame i. Theta is the angle about that z axis, alpha the one about that x axis.",
+    )
 
 
 def matrix(names, rows=slice(4), columns=slice(4)):

@@ -9,6 +9,7 @@ from dhlib.grading.asking import EXACT, METRES, link_function, pose
 from dhlib.grading.course.sources import number, row
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.pictures import described, same_for_all
 
 #: Rows of the table that hold a length.
 ARM = robots.pa10_6c("classic", lengths="A")
@@ -83,6 +84,19 @@ f = {number(given.f)}""",
 q_calibrated = np.deg2rad({row(given.calibrated)})
 p_calibrated = np.array({row(given.found(), decimals=4)})  # metres""",
     }
+
+
+@same_for_all
+def figure():
+    """The arm that the page describes."""
+    return described(
+        Given(f=0.16).arm,
+        "The arm at its zero pose, not to scale: its joint axes, and the base frame {0}",
+        "The arm stands straight up from the origin of frame 0. Axes 1, 4 and 6 are one vertical line. Axes 2, 3 and 5 "
+        "cross it and point to the left: in the shoulder, b above the foot, in the elbow, l1 above that, and in the "
+        "wrist, l2 above that. The flange is f above the wrist.",
+        lengths={"d_1": "b", "a_2": "l1", "d_4": "l2", "d_6": "f"},
+    )
 
 
 SYMBOLS = [f"theta{i}" for i in range(1, 7)]

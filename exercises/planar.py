@@ -4,12 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dhlib import Chain, Revolute, Tx
+from dhlib import Chain, Revolute, Rz, Tx
 from dhlib.grading.asking import choice, link_function, number
 from dhlib.grading.course.sources import number as number_text
 from dhlib.grading.course.sources import row
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Formula, Numbers, Table
+from dhlib.grading.pictures import same_for_all
+from dhlib.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,36 @@ def cells(given):
         "angles": f"q = np.deg2rad({row(given.angles)})",
         "offsets": f"d = {row(given.offsets)}  # millimetres",
     }
+
+
+@same_for_all
+def figure():
+    """The 3R arm from above, bent."""
+    turns, lengths = np.deg2rad([35, 40, -60]), (1.3, 1.0, 0.6)
+    scene = Scene(axis_length=0.5)
+    scene.add_frame(np.eye(4), "0", axes="xy")
+    place = np.eye(4)
+    for i, (turn, length) in enumerate(zip(turns, lengths, strict=True), 1):
+        scene.add_segment(place[:3, 3], place[:3, 3] + 0.62 * place[:3, 0], kind="guide", colour="muted")
+        scene.add_arc(place[:3, 3], [0, 0, 1], place[:3, 0], turn, f"θ_{i}", 0.42, "z")
+        onward = place @ Rz(turn) @ Tx(length)
+        scene.add_segment(place[:3, 3], onward[:3, 3], f"l{i}", "body")
+        place = onward
+    for i, at in enumerate(np.cumsum([[0, 0], *steps(turns, lengths)], axis=0), 1):
+        scene.add_point([*at, 0], "hand" if i > len(turns) else f"axis {i}")
+    return scene.sketch(
+        "The 3R arm from above, not to scale; 2R ends with its second link",
+        "Seen from above, all axes upright: axis 1 stands in the origin of frame 0, from where the link l1 leads to "
+        "axis 2, l2 to axis 3, and l3 to the hand. Each joint angle is measured anticlockwise from the direction of "
+        "the link before, the first from x0; the third is drawn negative.",
+        view=(-90, 90),
+    )
+
+
+def steps(turns, lengths):
+    """From each joint to the next, in the plane."""
+    for heading, length in zip(np.cumsum(turns), lengths, strict=True):
+        yield length * np.cos(heading), length * np.sin(heading)
 
 
 SYMBOLS = ["theta1", "theta2", "theta3"]

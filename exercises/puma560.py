@@ -9,6 +9,7 @@ from dhlib.grading.asking import EXACT, METRES, link_function, measured_at, pose
 from dhlib.grading.course.sources import matrix, number, row
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.pictures import described, same_for_all
 
 CRAIG = robots.puma560("modified", "craig")
 
@@ -94,6 +95,20 @@ turn = np.deg2rad({number(turn)})
 tilt = np.deg2rad({number(tilt)})""",
         "measured": matrix("X_measured", measured, decimals=(4, 4, 4, 5)),
     }
+
+
+@same_for_all
+def figure():
+    """The arm that the page describes; a3 and d3 are drawn larger than they are."""
+    outline = Given(a2=0.44, a3=0.12, d3=0.24, d4=0.42)
+    return described(
+        outline.arm,
+        "The arm at its zero pose, not to scale: its joint axes, and the base frame {0}",
+        "Frame 0 stands in the shoulder, where axis 1, upwards, and axis 2, to the left, meet. The upper arm a2 points "
+        "forward. Axis 3 is parallel to axis 2; d3 leads along it to the left, then a3 forward. There the forearm "
+        "hangs down by d4, along axes 4 and 6, to the wrist centre, where axis 5 points to the left.",
+        lengths={"a_2": "a2", "a_3": "a3", "d_3": "d3", "d_4": "d4"},
+    )
 
 
 SYMBOLS = [f"theta{i}" for i in range(1, 7)]

@@ -9,6 +9,7 @@ from dhlib.grading.asking import link_function, measured_at, pose, with_gripper
 from dhlib.grading.course.sources import matrix, number, row
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.pictures import described, same_for_all
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,20 @@ gripper = {number(given.gripper)}
 tilt = np.deg2rad({number(given.tilt)})""",
         "measured": matrix("X_measured", measured, decimals=(4, 4, 4, 2)),
     }
+
+
+@same_for_all
+def figure():
+    """The arm that the page describes."""
+    outline = Given(height=110, ahead=45, upper_arm=170, aside=70, forearm=200)
+    return described(
+        outline.arm,
+        "The arm at its zero pose, not to scale: its joint axes, and the base frame {0}",
+        "Axis 1 rises from the origin of frame 0. Axes 2 and 3 point to the left, along y0: axis 2 at the height of "
+        "the shoulder, a little ahead of axis 1, axis 3 further forward by the upper arm. From there the forearm rises "
+        "along axis 4, to the left of the middle plane, and carries the gripper.",
+        lengths={"d_1": "height", "a_1": "ahead", "a_2": "upper arm", "d_3": "aside", "d_4": "forearm"},
+    )
 
 
 SYMBOLS = ["theta1", "theta2", "theta3", "theta4"]

@@ -10,6 +10,8 @@ from dhlib.grading.asking import choice, reasoned
 from dhlib.grading.course.sources import number, row
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Function, Numbers, Table
+from dhlib.grading.pictures import described, same_for_all
+from dhlib.scene import beside_each_other
 
 #: Numbers of the PUMA's table that are not zero: row and column.
 NUMBERS = {
@@ -129,6 +131,26 @@ def draw(lots):
             lots.one("fgl d6", [0.052, 0.054, 0.058, 0.062]),
         ),
     )
+
+
+@same_for_all
+def figure():
+    """Two of the arms that others are compared with."""
+    arms = (
+        described(robots.stanford("classic"), "S", "S", q=(0, 0, 0.45, 0, 0, 0), width=PAIR),
+        described(robots.puma560("classic"), "PUMA", "PUMA", width=PAIR),
+    )
+    return beside_each_other(
+        arms,
+        "The arms S, its boom pushed out, and PUMA, with all angles zero, not to scale: joint axes, and frame {0}",
+        "Two arms with their joint axes. In S axis 2 leads aside from axis 1 to the boom, along which axes 3, 4 and 6 "
+        "run; axis 5 crosses them. In PUMA axes 1 and 2 meet, axis 3 is parallel to axis 2, and the forearm hangs "
+        "down aside of axis 1; axes 4, 5 and 6 meet in the wrist.",
+    )
+
+
+#: Width of one drawing of two.
+PAIR = 225
 
 
 def listed(name, rows, then=""):

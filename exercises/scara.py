@@ -9,6 +9,7 @@ from dhlib.grading.asking import EXACT, METRES, joint_values, link_function, mea
 from dhlib.grading.course.sources import matrix, number, row
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.pictures import described, same_for_all
 
 COBRA = robots.cobra600("classic")
 KINDS = COBRA.kinds
@@ -101,6 +102,18 @@ below = {number(below)}
 tilt = np.deg2rad({number(tilt)})""",
         "measured": matrix("X_measured", measured, decimals=(4, 4, 4, 5)),
     }
+
+
+@same_for_all
+def figure():
+    """The arm that the page describes."""
+    return described(
+        COBRA,
+        "The arm at its zero pose, not to scale: its joint axes, and the base frame {0}",
+        "Axis 1 rises from the origin of frame 0 at the foot. At the height d1 two links point forward, a1 to axis 2, "
+        "which points up, and a2 to the quill. There axes 3, a slide, and 4, a turn, are one line, and point down.",
+        lengths={"d_1": "d1", "a_1": "a1", "a_2": "a2"},
+    )
 
 
 SYMBOLS = ["theta1", "theta2", "d3", "theta4"]

@@ -9,6 +9,7 @@ from dhlib.grading.asking import EXACT, METRES, joint_values, link_function, pos
 from dhlib.grading.course.sources import number, row
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.pictures import described, same_for_all
 from dhlib.grading.retelling import altered
 
 STANFORD = robots.stanford("classic")
@@ -62,6 +63,20 @@ d6 = {number(given.d6)}""",
 q = np.deg2rad({row((first, second, 0, *wrist))})
 q[2] = {number(slide)}""",
     }
+
+
+@same_for_all
+def figure():
+    """The arm that the page describes, with its boom pushed out, so that its axes are apart."""
+    return described(
+        STANFORD,
+        "The arm with its boom pushed out, all angles zero, not to scale: its joint axes, and the base frame {0}",
+        "Axis 1 rises from the origin of frame 0. At the height d1 axis 2 points to the left; d2 leads along it to the "
+        "boom. The boom slides upwards along axis 3, with which axes 4 and 6 coincide. Axis 5 points forward through "
+        "the wrist centre, and the hand is d6 above it.",
+        q=(0, 0, 0.45, 0, 0, 0),
+        lengths={"d_1": "d1", "d_2": "d2", "d_6": "d6"},
+    )
 
 
 SYMBOLS = ["theta1", "theta2", "d3", "theta4", "theta5", "theta6"]

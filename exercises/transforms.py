@@ -9,6 +9,9 @@ from dhlib.grading.asking import constant, reasoned
 from dhlib.grading.course.sources import matrix, number, row
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Function, Numbers
+from dhlib.grading.pictures import same_for_all
+from dhlib.scene import Scene, beside_each_other
+from dhlib.view import VIEW
 
 #: Cosines and sines of angles that print with two digits.
 QUARTER = [(0.8, 0.6), (0.6, 0.8), (0.96, 0.28), (0.28, 0.96)]
@@ -109,6 +112,32 @@ def printed(k, kind, place):
     rows = [[*line, whole * at] for line, at in zip(KINDS[kind], place, strict=True)]
     listed = ", ".join(map(row, [*rows, [0, 0, 0, whole]]))
     return f"M{k} = np.array([{listed}])" + (" / 3" if whole == 3 else "")
+
+
+@same_for_all
+def figure():
+    """Frame {0}, and where each of the four steps brings it."""
+    steps = {"θ": (Rz(0.7), "z"), "d": (Tz(0.7), "z"), "a": (Tx(0.7), "x"), "α": (Rx(0.7), "x")}
+    pictures = []
+    for symbol, (step, axis) in steps.items():
+        scene = Scene()
+        scene.add_room([1.7, 0, 0], [0, 0, 1.7])
+        scene.add_frame(np.eye(4), "0", dashed=True)
+        scene.add_frame(step, letters=[f"{letter}′" for letter in "xyz"])
+        along, slides = np.eye(3)["xyz".index(axis)], symbol in "da"
+        if slides:
+            scene.add_segment([0, 0, 0], 0.7 * along, symbol, colour=axis)
+        else:
+            scene.add_arc([0, 0, 0], along, np.roll(along, 1), 0.7, symbol, 0.6, axis)
+        caption = f"{'T' if slides else 'R'}_{axis}({symbol})"
+        pictures.append(scene.sketch(view=VIEW, width=210, caption=caption))
+    return beside_each_other(
+        pictures,
+        "Four steps: frame {0}, dashed, and where each step brings it",
+        "Four pictures of frame 0, dashed, and a frame with dashes on its letters, which a step has moved: turned "
+        "about z, slid along z, slid along x, turned about x. A turn keeps the origin and one axis; a slide keeps the "
+        "directions of all three.",
+    )
 
 
 POSES = [

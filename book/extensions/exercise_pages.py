@@ -1,5 +1,7 @@
 """Exercises and solutions as pages: what to take along stands at their top, and a solution shows the answers alone.
 
+The figure, which a notebook carries as a picture of its own, stands in the page itself, in the page's colours.
+
 The notebooks of the exercises and the wheel of the library that checks them are served beside the pages. The wheel is
 built from the folder that the book is built from, so that an edition without references has a wheel without them.
 """
@@ -17,10 +19,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from docutils import nodes
+from formulas import ROOT
 from sphinx.errors import ExtensionError
 
+from dhlib.errors import DHError
 from dhlib.grading.course.editions import HOW
 from dhlib.grading.derive import close_regions
+from dhlib.grading.pictures import FIGURE, read_cell
+
+sys.path.append(str(ROOT / "book"))
+from bookkit.figures import inline_svg
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -55,6 +63,23 @@ def show_solution(app: Sphinx, docname: str, source: list[str]) -> None:
             text = re.sub(r"\A# ", "# Solution: ", text)
         cell["source"] = text.splitlines(keepends=True)
     source[0] = json.dumps({**notebook, "cells": cells})
+
+
+def draw_figure(app: Sphinx, docname: str, source: list[str]) -> None:
+    """Put the figure into the page: as an image of its own it would not take the colours of a dark page."""
+    if not docname.startswith((EXERCISES, SOLUTIONS)):
+        return
+    notebook = json.loads(source[0])
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "markdown" and cell["metadata"].get("dh", {}).get("part") == FIGURE:
+            try:
+                svg, alt, caption = read_cell("".join(cell["source"]))
+            except DHError as error:
+                raise ExtensionError(f"{docname}: {error}") from None
+            drawing = inline_svg(svg, alt)
+            told = f'<figcaption><p><span class="caption-text">{escape(caption)}</span></p></figcaption>'
+            cell["source"] = f'```{{raw}} html\n<figure class="align-default">{drawing}{told}</figure>\n```'
+    source[0] = json.dumps(notebook)
 
 
 def offer(app: Sphinx, doctree: nodes.document) -> None:
@@ -109,6 +134,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
     app.connect("builder-inited", prepare)
     app.connect("source-read", show_solution)
+    app.connect("source-read", draw_figure)
     app.connect("doctree-read", offer, priority=400)
     app.connect("build-finished", serve, priority=650)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

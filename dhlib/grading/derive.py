@@ -161,7 +161,7 @@ def main(arguments: list[str] | None = None) -> int:
         try:
             solution = load_notebook(source)
             stored = as_text(solution)
-            fill(solution, load_variant(source.stem, options.exercises).given)
+            fill(solution, load_variant(source.stem, options.exercises).cells())
             derived = as_text(derive(solution, source.stem))
         except DHError as error:
             print(error, file=sys.stderr)

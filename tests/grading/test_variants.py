@@ -57,7 +57,7 @@ def test_the_stored_notebook_holds_what_its_file_says(name):
     for folder in ("solutions", "exercises"):
         notebook = load(ROOT / folder / f"{name}.ipynb")
         filled = copy.deepcopy(notebook)
-        fill(filled, Variants(name, ROOT / "exercises").of().given)
+        fill(filled, Variants(name, ROOT / "exercises").of().cells())
         assert filled == notebook, "run make exercises"
 
 

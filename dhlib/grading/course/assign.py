@@ -53,7 +53,7 @@ class Assigning:
         source = source or self._pristine
         variant = self._variants.of(self._key, student)
         notebook = {**source, "cells": [dict(cell) for cell in source["cells"]]}
-        fill(notebook, variant.given)
+        fill(notebook, variant.cells())
         notebook = for_course(notebook, variant.exercise)
         tag = make_tag(self._key, self._variants.name, student, self._due)
         return {**notebook, "metadata": {**notebook["metadata"], "dh": as_metadata(tag)}}

@@ -47,7 +47,7 @@ def new_exercise(name: str, out: Path, robot: Chain | None = None) -> list[Path]
             folder.mkdir(parents=True, exist_ok=True)
         paths[0].write_text(_filled("exercise.txt", words), encoding="utf-8")
         notebook = _notebook(name, arm, words)
-        fill(notebook, load_variant(name, exercises).given)
+        fill(notebook, load_variant(name, exercises).cells())
         paths[1].write_text(as_text(notebook), encoding="utf-8")
         paths[2].write_text(as_text(derive(notebook, name)), encoding="utf-8")
     except OSError as error:

@@ -6,13 +6,15 @@ The file of an exercise that has variants offers
 * ``exercise(given)``, which makes the `Exercise`, with every reference, trap and probe computed from `given`, and
   ``EXERCISE = exercise(DEFAULT)``;
 * ``cells(given)``, the source of each given cell of the notebook, by its part;
-* ``draw(lots)``, which draws the given numbers of one student from `Lots`.
+* ``draw(lots)``, which draws the given numbers of one student from `Lots`;
+* ``figure(given)``, if the notebook has a given cell ``figure``: what stands in it (see `pictures`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -21,6 +23,8 @@ from dhlib.errors import DHError
 from dhlib.grading.course.editions import HOW, how_to
 from dhlib.grading.course.lots import Lots
 from dhlib.grading.exercise import Exercise, find_exercise, load_module
+from dhlib.grading.pictures import FIGURE, as_cell
+from dhlib.scene import Sketch
 
 
 @dataclass(frozen=True)
@@ -32,11 +36,18 @@ class Variant:
     exercise : Exercise
         What is asked, and how it is marked.
     given : mapping of str to str
-        Part of each given cell to its source.
+        Part of each given cell to its source, but for the figure.
+    figure : callable, optional
+        Draws the figure: graders need none.
     """
 
     exercise: Exercise
     given: Mapping[str, str] = field(default_factory=dict)
+    figure: Callable[[], Sketch] | None = None
+
+    def cells(self) -> dict[str, str]:
+        """Part of each given cell to its source, the figure too."""
+        return {**self.given, **({FIGURE: as_cell(self.figure())} if self.figure else {})}
 
 
 def load_variant(
@@ -92,20 +103,24 @@ class Variants:
         """The variant of a student; without one, that of the book."""
         module: Any = self._module
         if key is None or student is None:
-            given = module.cells(module.DEFAULT) if hasattr(module, "cells") else {}
-            return Variant(module.EXERCISE, {HOW: how_to(module.EXERCISE), **given})
+            drawn = getattr(module, "DEFAULT", None)
+            exercise, cells = module.EXERCISE, module.cells(drawn) if hasattr(module, "cells") else {}
+            return self._variant(exercise, cells, drawn)
         if not self.vary:
             raise DHError(
                 f"the exercise {self.name} has no numbers to draw: {self.path} should offer draw(lots), "
                 "exercise(given) and cells(given)."
             )
         drawn = module.draw(Lots(key, student, self.name))
-        exercise = module.exercise(drawn)
-        return Variant(exercise, {HOW: how_to(exercise), **module.cells(drawn)})
+        return self._variant(module.exercise(drawn), module.cells(drawn), drawn)
+
+    def _variant(self, exercise: Exercise, cells: Mapping[str, str], drawn: Any) -> Variant:
+        figure = getattr(self._module, "figure", None)
+        return Variant(exercise, {HOW: how_to(exercise), **cells}, partial(figure, drawn) if figure else None)
 
 
 def fill(notebook: dict[str, Any], given: Mapping[str, str]) -> None:
-    """Write given numbers into the given cells of a notebook.
+    """Write given numbers into the given cells of a notebook; without a figure among them, its cell stays.
 
     Raises
     ------
@@ -119,6 +134,8 @@ def fill(notebook: dict[str, Any], given: Mapping[str, str]) -> None:
             continue
         part = about.get("part")
         if part not in left:
+            if part == FIGURE:
+                continue
             raise DHError(f"the given cell {part!r} has no source: cells(given) should return one under this name.")
         source = left.pop(part)
         if "".join(cell["source"]) != source:
