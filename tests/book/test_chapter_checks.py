@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from sampling import some
 
 CELL = re.compile(r"^```\{code-cell\}[^\n]*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 
@@ -201,8 +202,9 @@ def run(chapter: str) -> None:
 def test_a_changed_sign_fails(root: Path, chapter: str, capsys: pytest.CaptureFixture[str]) -> None:
     text = (root / "book" / f"{chapter}.md").read_text("utf-8")
     run(text)
-    for right, changed in CHANGES[chapter]:
+    for right, _ in CHANGES[chapter]:
         assert text.count(right) == 1, f"book/{chapter}.md has {text.count(right)} places with {right!r}"
+    for right, changed in some(CHANGES[chapter], 4, chapter):
         with pytest.raises(AssertionError):
             run(text.replace(right, changed))
     capsys.readouterr()

@@ -6,8 +6,6 @@ Each page needs a Python of its own, so a seeded sample of chapters is run; ``FU
 from __future__ import annotations
 
 import json
-import os
-import random
 import re
 from pathlib import Path
 from typing import Any
@@ -16,6 +14,7 @@ import pytest
 from content_key import content_key
 from jupyter_cache import get_cache
 from live import needs_numpy
+from sampling import some
 
 pytestmark = [pytest.mark.book, pytest.mark.browser]
 
@@ -25,11 +24,7 @@ CHAPTERS = sorted(
     for path in (ROOT / "book").glob("*.md")
     if len(re.findall(r"^```\{code-cell\}", path.read_text("utf-8"), re.M)) > 1
 )
-SAMPLE = 2
-FULL = os.environ.get("FULL", "") == "1"
-CHOSEN = (
-    CHAPTERS if FULL else sorted(random.Random(os.environ.get("PYTEST_XDIST_TESTRUNUID", "0")).sample(CHAPTERS, SAMPLE))
-)
+CHOSEN = some(CHAPTERS, 2)
 FIVE_MINUTES = 300_000
 TOLERANCE = 1e-6
 NUMBER = re.compile(r"-?(?:\d+\.\d*|\.\d+|\d+)(?:e[-+]?\d+)?")

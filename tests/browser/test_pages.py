@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from itertools import product
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
 from building import pages_of
+from sampling import FULL
 
 pytestmark = [pytest.mark.book, pytest.mark.browser]
 
@@ -47,9 +49,15 @@ def settle(page: Any) -> None:
     page.wait_for_timeout(100)
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-@pytest.mark.parametrize("width", [1280, 390])
-@pytest.mark.parametrize("scheme", ["http", "file"])
+#: Each two of scheme, width and theme meet in half of the combinations already.
+COMBINATIONS = [
+    (("http", "file")[i], (1280, 390)[j], ("light", "dark")[k])
+    for i, j, k in product((0, 1), repeat=3)
+    if FULL or (i + j + k) % 2 == 0
+]
+
+
+@pytest.mark.parametrize(("scheme", "width", "theme"), COMBINATIONS)
 def test_pages(browser: Any, site: Path, address: str, scheme: str, width: int, theme: str) -> None:
     home = address if scheme == "http" else "file://"
     base = address if scheme == "http" else site.as_uri()

@@ -4,11 +4,11 @@ The witness is the product of exponentials, which knows axes and no DH.
 """
 
 import math
-import os
 import warnings
 
 import numpy as np
 import pytest
+from sampling import FULL
 
 from dhlib import (
     Axis,
@@ -48,7 +48,7 @@ ROBOTS = (
     "iiwa14",
     "irb140",
 )
-CHAINS = 20_000 if os.environ.get("DHBOOK_FULL") else 1000
+CHAINS = 20_000 if FULL else 1000
 N = 4
 X, Y, Z = np.eye(3)
 

@@ -1,10 +1,10 @@
 """Every misconception that shows in a part is caught there, and named."""
 
-import os
 from pathlib import Path
 
 import numpy as np
 import pytest
+from sampling import FULL
 
 from dhlib import Chain, robots
 from dhlib.grading.course.variants import Variants
@@ -40,7 +40,7 @@ def test_every_misconception_is_named_and_every_right_answer_known(every, result
 def test_misconceptions_are_named_with_a_students_own_numbers_too(name):
     """By value, since that is what other numbers change: none passes, and as many are told exactly."""
     variants = Variants(name, ROOT / "exercises")
-    for student in [f"student {k}" for k in range(20 if os.environ.get("DHBOOK_FULL") else 1)]:
+    for student in [f"student {k}" for k in range(20 if FULL else 1)]:
         tally = Tally()
         for part in variants.of(bytes(range(32)), student).exercise.parts:
             if isinstance(part.asks, Valued):
