@@ -18,6 +18,7 @@ from dhlib.grading.batch.store import Store
 from dhlib.grading.batch.work import Grader, Settings, Work
 from dhlib.grading.wall import Limits
 
+FULL = bool(os.environ.get("DHBOOK_FULL"))
 EXERCISE = """
 from dhlib import robots
 from dhlib.grading.exercise import Exercise, Part
@@ -70,9 +71,9 @@ def exercises(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def class_(tmp_path_factory):
-    """Two hundred notebooks: right, wrong, broken, deadly, and some that are none."""
+    """Many notebooks: right, wrong, broken, deadly, and some that are none."""
     folder = tmp_path_factory.mktemp("class")
-    for k in range(200):
+    for k in range(200 if FULL else 40):
         (folder / f"s{k:03}").mkdir()
         first, second = ANSWERS[k % 10] if k % 50 == 8 or k % 10 != 8 else "'a'", ANSWERS[(k // 10) % 8]
         content = "{" if k % 25 == 7 else notebook(first, second)
@@ -120,7 +121,7 @@ def rows(out):
 
 
 @pytest.mark.sandbox
-def test_two_hundred_notebooks_get_the_same_marks_everywhere(class_, settings, local, tmp_path):
+def test_many_notebooks_get_the_same_marks_everywhere(class_, settings, local, tmp_path):
     for name, workers in (
         ("one", Pool(settings, 1)),
         ("two", Pool(settings, 2)),
@@ -129,7 +130,7 @@ def test_two_hundred_notebooks_get_the_same_marks_everywhere(class_, settings, l
         with workers:
             grade_class([class_], tmp_path / name, settings, workers)
     one, two, cluster = (rows(tmp_path / name) for name in ("one", "two", "cluster"))
-    assert len(one) == 200
+    assert len(one) == len(list(class_.iterdir()))
     assert one == two
     assert one == cluster
     assert {row[0].status for row in one.values()} == {"graded", "unreadable"}
