@@ -8,12 +8,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from dhlib.errors import DHError
+from dhlib.grading.asked import Asked, Catalogue
 from dhlib.grading.closing import close_parts
-from dhlib.grading.course.papers import NotAssigned, Paper, check_tag, load_paper, read_tag
-from dhlib.grading.exercise import Exercise, find_exercise
+from dhlib.grading.course.papers import NotAssigned, Tag, check_tag, read_tag
+from dhlib.grading.exercise import Exercise
 from dhlib.grading.marking import Marker
 from dhlib.grading.marks import OPEN, Mark, stopped_with
-from dhlib.grading.notebook import Cell, damage, load_notebook, merge, read_cells
+from dhlib.grading.notebook import Cell, damage, merge, parse_notebook, read_bytes, read_cells
 from dhlib.grading.wall import Limits, Outcome, Sandbox
 
 GRADED, INCOMPLETE, UNREADABLE, FAILED = "graded", "stopped", "unreadable", "failed"
@@ -88,47 +89,106 @@ def grade_notebook(
         If the exercise itself is missing or broken, which is the grader's to mend.
     """
     path = Path(path)
+    catalogue = Catalogue(Path(exercises) if exercises is not None else None, key)
     try:
-        notebook = load_notebook(path)
-        submission = read_cells(notebook)
-        tag = read_tag(notebook)
-        if key is not None:
-            check_tag(tag, key)
-        elif tag.student:
-            raise NotAssigned(f"it was assigned to {tag.student!r}: grade it with --key.")
-    except NotAssigned as error:
-        return Result(path, UNREADABLE, f"{path.name} cannot be graded: {error}")
+        data = read_bytes(path)
     except DHError as error:
         return Result(path, UNREADABLE, str(error))
-    name, given = (tag.exercise, False) if key is not None else (name or tag.exercise or path.stem, bool(name))
-    paper = _paper(name, exercises, key, tag.student or None, given)
-    if paper is None:
-        return Result(path, UNREADABLE, f"{path.name} does not say which exercise it is; name it with --exercise NAME.")
-    exercise = paper.exercise
-    cells = close_parts(merge(paper.cells, submission), exercise)
-    requests = {part.id: part.asks.request() for part in exercise.parts}
+    try:
+        ready = prepare(data, path.name, catalogue, name)
+    except CannotGrade as error:
+        return Result(path, UNREADABLE, str(error))
     with contextlib.ExitStack() as stack:
         sandbox = sandbox or stack.enter_context(Sandbox())
-        outcome = sandbox.run(cells, requests, limits)
-    marks = [with_error(mark, cells, outcome) for mark in Marker(exercise).mark_all(outcome.readings)]
-    message = " ".join(filter(None, (damage(notebook), outcome.note)))
-    return Result(path, INCOMPLETE if outcome.note else GRADED, message, exercise, marks)
+        outcome = sandbox.run(ready.cells, ready.asked.requests, limits)
+    message = " ".join(filter(None, (ready.damage, outcome.note)))
+    return Result(path, INCOMPLETE if outcome.note else GRADED, message, ready.asked.exercise, mark(ready, outcome))
 
 
-def _paper(
-    name: str, exercises: str | Path | None, key: bytes | None, student: str | None, given: bool
-) -> Paper | None:
-    """What the student was given; none if a submission names an exercise that is not there."""
+class CannotGrade(DHError):
+    """What was handed in cannot be graded; the text says why, `claims` whose it is by its own word."""
+
+    def __init__(self, why: str, claims: str = "") -> None:
+        super().__init__(why)
+        self.claims = claims
+
+
+@dataclass(frozen=True, eq=False)
+class Ready:
+    """The pristine exercise with somebody's answers in it: ready for the box.
+
+    Parameters
+    ----------
+    asked : Asked
+    claims : str
+        Whose it is by its own metadata, or ``""``.
+    cells : sequence of Cell
+    damage : str
+        What is missing from the notebook, as a sentence, or ``""``.
+    """
+
+    asked: Asked
+    claims: str
+    cells: Sequence[Cell]
+    damage: str = ""
+
+
+def prepare(data: bytes, file: str, catalogue: Catalogue, name: str = "") -> Ready:
+    """Read what was handed in, and put its answers into the pristine exercise.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file.
+    file : str
+        Its name.
+    catalogue : Catalogue
+        With the key of the course, only notebooks that were assigned with it are graded: their seal, which nobody can
+        make without the key, says whose numbers they hold. Whose work they are it does not say.
+    name : str, optional
+        The exercise; by default what the notebook's metadata says, else its file name.
+
+    Raises
+    ------
+    CannotGrade
+        If that is not possible, for what the student handed in.
+    DHError
+        If the exercise itself is missing or broken, which is the grader's to mend.
+    """
     try:
-        find_exercise(name, ".py", exercises)
-    except DHError:
-        if given:
-            raise
-        return None
-    return load_paper(name, exercises, key, student)
+        notebook = parse_notebook(data, file)
+        cells = read_cells(notebook)
+        tag = read_tag(notebook)
+        if catalogue.key is not None:
+            check_tag(tag, catalogue.key)
+        elif tag.seal:
+            raise NotAssigned(f"it was assigned to {tag.student!r}: grade it with --key.")
+    except NotAssigned as error:
+        raise CannotGrade(f"{file} cannot be graded: {error}") from None
+    except DHError as error:
+        raise CannotGrade(str(error)) from None
+    claims = "".join(letter for letter in tag.student if letter.isprintable()).strip()
+    name = _exercise(tag, file, catalogue, name)
+    if not name:
+        raise CannotGrade(f"{file} does not say which exercise it is; name it with --exercise NAME.", claims)
+    asked = catalogue.asked(name, tag.student)
+    return Ready(asked, claims, close_parts(merge(asked.pristine, cells), asked.exercise), damage(notebook))
 
 
-def with_error(mark: Mark, cells: Sequence[Cell], outcome: Outcome) -> Mark:
+def _exercise(tag: Tag, file: str, catalogue: Catalogue, name: str) -> str:
+    """Which exercise it is: what the seal or the instructor says, else the notebook, else the name of its file."""
+    if catalogue.key is not None:
+        return tag.exercise
+    return name or next((name for name in (tag.exercise, Path(file).stem) if name and catalogue.has(name)), "")
+
+
+def mark(ready: Ready, outcome: Outcome) -> list[Mark]:
+    """Mark what came out of the box: one mark for each part."""
+    marks = Marker(ready.asked.exercise).mark_all(outcome.readings)
+    return [_with_error(mark, ready.cells, outcome) for mark in marks]
+
+
+def _with_error(mark: Mark, cells: Sequence[Cell], outcome: Outcome) -> Mark:
     """A mark that says why there is no answer, where its cell stopped."""
     if mark.verdict != OPEN:
         return mark

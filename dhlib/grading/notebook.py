@@ -73,16 +73,26 @@ def load_notebook(path: str | Path) -> dict[str, Any]:
         If the file cannot be read, or is no notebook.
     """
     path = Path(path)
+    return parse_notebook(read_bytes(path), path.name)
+
+
+def read_bytes(path: Path) -> bytes:
+    """What stands in a file that may be anything, and no more of it than a notebook could hold.
+
+    Raises
+    ------
+    DHError
+        If it cannot be read.
+    """
     try:
         # What it is, is asked of the open file: a name may stand for another file a moment later, and a pipe waits.
         fd = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with open(fd, "rb") as file:
             if not stat.S_ISREG(os.fstat(fd).st_mode):
                 raise DHError(f"{path.name} is no file.")
-            data = file.read(LARGEST_FILE + 1)
+            return file.read(LARGEST_FILE + 1)
     except OSError as error:
         raise DHError(f"{path.name} cannot be opened: {error.strerror or type(error).__name__}.") from None
-    return parse_notebook(data, path.name)
 
 
 def parse_notebook(data: bytes, name: str) -> dict[str, Any]:

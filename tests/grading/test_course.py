@@ -263,7 +263,8 @@ def test_the_solution_of_one_student_is_written_and_proved(tmp_path, key, capsys
 
 def test_a_solution_that_does_not_solve_is_refused(tmp_path, key, capsys):
     text = (ROOT / "solutions" / "quickshot.ipynb").read_text("utf-8")
-    (tmp_path / "quickshot.ipynb").write_text(text.replace("0, upper_arm, 0", "0, 160, 0"), encoding="utf-8")
+    # 161: a length that is never drawn
+    (tmp_path / "quickshot.ipynb").write_text(text.replace("0, upper_arm, 0", "0, 161, 0"), encoding="utf-8")
     command = ["solution", "quickshot", "--student", "m1", "--key", str(key), "--exercises", EXERCISES]
     out = tmp_path / "s.ipynb"
     assert main([*command, "--solutions", str(tmp_path), "--out", str(out)]) == 2

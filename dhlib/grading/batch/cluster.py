@@ -209,8 +209,8 @@ def check_address(scheduler: str) -> None:
 def job_of(prepared: Prepared, limits: Limits) -> dict[str, Any]:
     """All that a cluster is told of a submission."""
     return {
-        "cells": [asdict(cell) for cell in prepared.cells],
-        "requests": prepared.asked.requests,
+        "cells": [asdict(cell) for cell in prepared.ready.cells],
+        "requests": prepared.ready.asked.requests,
         "limits": asdict(limits),
         "dhlib": versions()["dhlib"],
     }

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Literal, Protocol
 
 from dhlib.errors import DHError
-from dhlib.grading.batch.asked import Catalogue, names
+from dhlib.grading.asked import Catalogue, names
 from dhlib.grading.batch.conflicts import conflicts
 from dhlib.grading.batch.intake import HandedIn, Intake, Lookup, collect
 from dhlib.grading.batch.lock import Lock

@@ -17,13 +17,9 @@ from pathlib import Path
 from typing import Any
 
 from dhlib.errors import DHError
-from dhlib.grading.batch.asked import Asked, Catalogue
+from dhlib.grading.asked import Catalogue
 from dhlib.grading.batch.rows import MarkRow
-from dhlib.grading.closing import close_parts
-from dhlib.grading.course.papers import NotAssigned, Tag, check_tag, read_tag
-from dhlib.grading.grade import FAILED, GRADED, INCOMPLETE, UNREADABLE, with_error
-from dhlib.grading.marking import Marker
-from dhlib.grading.notebook import Cell, damage, merge, parse_notebook, read_cells
+from dhlib.grading.grade import FAILED, GRADED, INCOMPLETE, UNREADABLE, CannotGrade, Ready, mark, prepare
 from dhlib.grading.wall import Limits, Outcome
 
 #: A longer answer is not kept: nobody would look at it, and it says nothing of a misconception.
@@ -120,10 +116,7 @@ class Prepared:
     """A submission that is ready for the box."""
 
     work: Work
-    asked: Asked
-    claims: str
-    cells: Sequence[Cell]
-    damage: str = ""
+    ready: Ready
 
 
 class Grader:
@@ -149,51 +142,37 @@ class Grader:
         if work.fault:
             return self._unreadable(work, work.fault)
         try:
-            notebook = parse_notebook(work.data, work.name)
-            cells = read_cells(notebook)
-            tag = read_tag(notebook)
-            self._check(tag)
-        except NotAssigned as error:
-            return self._unreadable(work, f"{work.name} cannot be graded: {error}")
-        except DHError as error:
-            return self._unreadable(work, str(error))
-        claims = "".join(letter for letter in tag.student if letter.isprintable()).strip()
-        name = self._exercise(tag, work.name)
-        if not name:
-            says = f"{work.name} does not say which exercise it is; name it with --exercise NAME."
-            return self._unreadable(work, says, claims)
-        asked = self.catalogue.asked(name, tag.student)
-        merged = close_parts(merge(asked.pristine, cells), asked.exercise)
-        return Prepared(work, asked, claims, merged, damage(notebook))
+            return Prepared(work, prepare(work.data, work.name, self.catalogue, self.settings.exercise))
+        except CannotGrade as error:
+            return self._unreadable(work, str(error), error.claims)
 
     def finish(self, prepared: Prepared, outcome: Outcome, seconds: float) -> Graded:
         """Mark what came out of the box."""
-        exercise = prepared.asked.exercise
-        readings = outcome.readings
-        marks = [with_error(mark, prepared.cells, outcome) for mark in Marker(exercise).mark_all(readings)]
+        ready = prepared.ready
+        exercise = ready.asked.exercise
         return Graded(
             number=prepared.work.number,
             status=INCOMPLETE if outcome.note else GRADED,
-            message=" ".join(filter(None, (prepared.damage, outcome.note)))[:LONGEST_MESSAGE],
+            message=" ".join(filter(None, (ready.damage, outcome.note)))[:LONGEST_MESSAGE],
             exercise=exercise.name,
-            claims=prepared.claims,
+            claims=ready.claims,
             marks=[
                 MarkRow(
-                    part=mark.part,
+                    part=one.part,
                     title=part.title,
-                    points=mark.points,
-                    out_of=mark.out_of,
-                    verdict=mark.verdict,
-                    message=mark.message,
-                    misconception=mark.misconception,
-                    section=mark.section,
-                    answer=kept(readings.get(mark.part)),
+                    points=one.points,
+                    out_of=one.out_of,
+                    verdict=one.verdict,
+                    message=one.message,
+                    misconception=one.misconception,
+                    section=one.section,
+                    answer=kept(outcome.readings.get(one.part)),
                 )
-                for mark, part in zip(marks, exercise.parts, strict=True)
+                for one, part in zip(mark(ready, outcome), exercise.parts, strict=True)
             ],
             out_of=exercise.points,
             seconds=seconds,
-            exercise_sha256=prepared.asked.sha256,
+            exercise_sha256=ready.asked.sha256,
         )
 
     def _unreadable(self, work: Work, why: str, claims: str = "") -> Graded:
@@ -209,27 +188,6 @@ class Grader:
             out_of=asked.exercise.points if asked else 0.0,
             exercise_sha256=asked.sha256 if asked else "",
         )
-
-    def _check(self, tag: Tag) -> None:
-        """Make sure that an assigned notebook is graded with the key that it was assigned with.
-
-        Its seal, which nobody can make without the key, says whose numbers it holds; whose work it is it does not say.
-        """
-        if self.settings.key is not None:
-            check_tag(tag, self.settings.key)
-        elif tag.seal:
-            raise NotAssigned(f"it was assigned to {tag.student!r}: grade it with --key.")
-
-    def _exercise(self, tag: Tag, file: str) -> str:
-        """Which exercise it is: what the seal or the instructor says, else the notebook, else the name of its file."""
-        if self.settings.key is not None:
-            return tag.exercise
-        if self.settings.exercise:
-            return self.settings.exercise
-        for name in (tag.exercise, Path(file).stem):
-            if name and self.catalogue.has(name):
-                return name
-        return ""
 
 
 def failed(number: int, why: str) -> Graded:
@@ -250,7 +208,7 @@ def grade(grader: Grader, sandbox: Any, work: Work) -> Graded:
         prepared = grader.prepare(work)
         if isinstance(prepared, Graded):
             return prepared
-        outcome = sandbox.run(prepared.cells, prepared.asked.requests)
+        outcome = sandbox.run(prepared.ready.cells, prepared.ready.asked.requests)
         return grader.finish(prepared, outcome, round(time.monotonic() - begun, 3))
     except DHError:
         raise
