@@ -8,6 +8,7 @@ from typing import Any
 
 from dhlib.errors import DHError
 from dhlib.grading.batch.store import Store
+from dhlib.grading.course.variants import Variants
 from dhlib.grading.reports import autograder, classroom
 from dhlib.grading.reports.arguments import add_wishes, keep_wishes
 from dhlib.grading.reports.formats import Files, Wishes, formats
@@ -18,6 +19,11 @@ ELSEWHERE = {
     "gradescope-autograder": (autograder.write, "a zip with which Gradescope grades by itself"),
     "github-classroom": (classroom.write, "a workflow with which GitHub grades each push"),
 }
+#: What they cannot do: a key in a container is a key in the hands of whoever's notebook runs there.
+NO_KEY = (
+    "It marks by the numbers of the book. Notebooks with numbers of a student's own are refused there, since no key of a "
+    "course belongs where students' code runs: collect them, and grade them here with `dhlib grade --key`."
+)
 #: These find a student by what a platform calls them.
 BY_NAME = ("moodle", "canvas")
 
@@ -70,6 +76,8 @@ def export(options: argparse.Namespace) -> int:
             raise DHError(f"{path} cannot be written: {error.strerror}.") from None
     shown = sorted({name.split("/")[0] for name in files if not name.startswith(".")} or {""})
     print("\n".join(f"Written: {folder / name}" for name in shown))
+    if options.format in ELSEWHERE and Variants(options.exercise, options.exercises).vary:
+        print(NO_KEY)
     return 0
 
 

@@ -13,6 +13,7 @@ import pytest
 import yaml
 
 from dhlib.cli import main
+from dhlib.grading.course.assign import Assigning
 from dhlib.grading.reports import autograder, classroom
 from dhlib.grading.reports.wheel import wheel
 
@@ -122,6 +123,29 @@ def test_the_workflow_keeps_to_the_rules_of_the_classroom():
         assert subprocess.run(["bash", "-n", "-c", script], check=False).returncode == 0
         assert "@EXERCISE@" not in script
     assert any(name.startswith(".github/dhlib/dhlib-") for name in files)
+
+
+@pytest.mark.parametrize("kind", ["gradescope-autograder", "github-classroom"])
+def test_what_is_graded_elsewhere_has_no_numbers_of_a_students_own_and_says_so(kind, tmp_path, capsys):
+    command = ["export", "--format", kind, "--out", str(tmp_path / "out")]
+    assert main([*command, "--exercise", "quickshot", "--exercises", str(ROOT / "exercises")]) == 0
+    assert "numbers of the book" in capsys.readouterr().out
+    for suffix in (".py", ".ipynb"):  # one that cannot vary, of which there is nothing to say
+        shutil.copy(ROOT / "exercises" / f"quickshot{suffix}", tmp_path / f"fixed{suffix}")
+    source = (tmp_path / "fixed.py").read_text("utf-8").replace("def draw(", "def no_draw(")
+    (tmp_path / "fixed.py").write_text(source, "utf-8")
+    assert main([*command, "--exercise", "fixed", "--exercises", str(tmp_path)]) == 0
+    assert "numbers of the book" not in capsys.readouterr().out
+
+
+@pytest.mark.notebooks
+@pytest.mark.sandbox
+def test_gradescope_refuses_an_assigned_notebook_with_a_sentence(unpacked, tmp_path):
+    notebook = Assigning("quickshot", b"key", ROOT / "exercises").notebook("a1")
+    (tmp_path / "quickshot.ipynb").write_text(json.dumps(notebook), "utf-8")
+    result = graded(unpacked, tmp_path / "autograder", tmp_path / "quickshot.ipynb")
+    assert result["score"] == 0
+    assert "assigned to 'a1'" in result["output"]
 
 
 @pytest.mark.parametrize("name", ["nothing", "../x", "a; rm -rf /", "$(x)"])
