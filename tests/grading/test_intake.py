@@ -288,7 +288,10 @@ def hostile(kind):
                 archive.writestr(info, "/etc/passwd")
             return stream.getvalue()
         case "bomb":
-            return packed({"quickshot.ipynb": b"0" * 40_000_000})
+            data = bytearray(packed({"quickshot.ipynb": b"0" * 4_000_000}))
+            at = data.rfind(b"PK\x01\x02")
+            data[at + 24 : at + 28] = (2**31).to_bytes(4, "little")
+            return bytes(data)
         case "large":
             return packed({"quickshot.ipynb": b"01" * 30_000_000})
         case "encrypted":
@@ -325,7 +328,7 @@ def hostile(kind):
         ("drive", "outside of its folder"),
         ("backslashes", "outside of its folder"),
         ("link", "links are not followed"),
-        ("bomb", "times its size"),
+        ("bomb", "larger than 50 MB"),
         ("large", "larger than 50 MB"),
         ("encrypted", "encrypted"),
         ("damaged", "damaged"),
@@ -347,6 +350,23 @@ def test_hostile_archives_cost_their_authors_only(class_, kind, says):
         with pytest.raises(DHError, match=says):
             reader.read(intake.found[1].entry)
     assert sorted(folder.rglob("*")) == before
+
+
+def test_what_one_student_packed_has_a_bound_of_its_own(tmp_path, monkeypatch):
+    inner = packed({f"{k}.ipynb": NOTEBOOK for k in range(20)})
+    source = packed({"ada/work.zip": inner, "bob/quickshot.ipynb": NOTEBOOK}, tmp_path / "class.zip")
+    assert len(collect([source], EXERCISES).found) == 21
+    monkeypatch.setattr(archives, "MOST_BYTES_OF_ONE", 10)
+    found = collect([source], EXERCISES).found
+    assert [(h.origin.student, "left alone" in h.entry.fault) for h in found] == [("ada", True), ("bob", False)]
+
+
+def test_output_that_says_one_thing_over_and_over_is_no_bomb(class_):
+    folder = class_("bob/quickshot.ipynb")
+    (folder / "ada").mkdir()
+    (folder / "ada" / "work.zip").write_bytes(packed({"quickshot.ipynb": b"0" * 20_000_000}))
+    with Reader() as reader:
+        assert len(reader.read(collect([folder], EXERCISES).found[0].entry)) == 20_000_000
 
 
 @pytest.mark.parametrize("what", ["MOST_ENTRIES", "MOST_BYTES"])

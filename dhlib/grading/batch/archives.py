@@ -18,12 +18,9 @@ from dhlib.grading.notebook import LARGEST_FILE
 
 #: Entries of one archive: a class of ten thousand with a few files each.
 MOST_ENTRIES = 100_000
-#: What all entries of one archive may come to, unpacked.
+#: What all entries of one archive may come to, unpacked: of a class, and of what one student packed.
 MOST_BYTES = 8_000_000_000
-#: An entry that shrinks more than this when it is packed holds one thing over and over; deflate ends at 1032.
-LARGEST_RATIO = 600
-#: Below this size no ratio matters.
-SMALL = 5_000_000
+MOST_BYTES_OF_ONE = 10 * LARGEST_FILE
 #: Archives in archives: what a platform packs may hold what a student has packed, and no more.
 DEEPEST = 2
 
@@ -64,6 +61,7 @@ class Archive:
     Parameters
     ----------
     file : path or bytes
+        Bytes: what a student packed.
     name : str
         What to call it in messages.
 
@@ -91,9 +89,10 @@ class Archive:
             raise DHError(f"{name} is damaged, or no ZIP file: it cannot be unpacked.") from None
         self._stream = stream
         self._infos = self._zip.infolist()
-        if sum(info.file_size for info in self._infos) > MOST_BYTES:
+        most = MOST_BYTES_OF_ONE if isinstance(file, bytes) else MOST_BYTES
+        if sum(info.file_size for info in self._infos) > most:
             self.close()
-            raise DHError(f"{name} would unpack to more than {MOST_BYTES // 10**9} GB, so it is left alone.")
+            raise DHError(f"{name} would unpack to more than {most // 1_000_000:,} MB, so it is left alone.")
 
     def close(self) -> None:
         """Close it."""
@@ -200,8 +199,4 @@ def _fault(info: zipfile.ZipInfo, name: str) -> str:
         return f"{name} is encrypted; hand it in without a password."
     if info.file_size > LARGEST_FILE:
         return too_large(name)
-    if info.file_size > SMALL and info.file_size > LARGEST_RATIO * max(1, info.compress_size):
-        return (
-            f"{name} would unpack to {info.file_size // max(1, info.compress_size)} times its size: no notebook does."
-        )
     return ""
