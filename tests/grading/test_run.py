@@ -96,8 +96,8 @@ class Here:
 def run(tmp_path, exercises):
     """``run(**options)``: grade the class; returns whom, and the results."""
 
-    def go(stop_after=None, **options):
-        settings = Settings(exercises=exercises)
+    def go(stop_after=None, exercise="", **options):
+        settings = Settings(exercise, exercises)
         here = Here(settings, stop_after)
         try:
             grade_class([tmp_path / "class"], tmp_path / "out", settings, here, **options)
@@ -164,6 +164,21 @@ def test_regrading_takes_what_was_asked_differently(hand_in, run, exercises, mon
     assert run(regrade="changed")[0] == []
     monkeypatch.setattr("dhlib.grading.batch.run.versions", lambda: versions() | {"dhlib": "9"})
     assert run(regrade="changed")[0] == ["ada"]
+
+
+def test_what_did_not_say_which_exercise_it_is_is_graded_once_somebody_says(hand_in, run):
+    hand_in("ada/tiny.ipynb", "a")
+    hand_in("bob/final (3).ipynb", "a", exercise="")
+    hand_in("eve/tiny.ipynb", "no notebook\n")
+    _, submissions, _ = run()
+    assert [(s.student, s.status) for s in submissions] == [
+        ("ada", "graded"), ("bob", "unreadable"), ("eve", "unreadable")
+    ]  # fmt: skip
+    assert "--exercise NAME" in submissions[1].message
+    graded, submissions, _ = run(exercise="tiny")
+    assert graded == ["bob", "eve"]
+    assert [(s.student, s.points) for s in submissions] == [("ada", 2), ("bob", 2), ("eve", 0)]
+    assert run(exercise="tiny")[0] == []
 
 
 def test_regrading_all_is_resumed_too(hand_in, run):

@@ -194,6 +194,8 @@ class _Run:
             return grounds.graded_at < self.since
         if grounds.status == FAILED:
             return True
+        if not grounds.exercise and self.settings.exercise:  # nobody knew which exercise it was, and now somebody says
+            return True
         exercise = self.settings.exercise or grounds.exercise
         return self.regrade == "changed" and (
             grounds.exercise != exercise
