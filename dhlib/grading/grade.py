@@ -198,6 +198,8 @@ def _with_error(mark: Mark, cells: Sequence[Cell], outcome: Outcome) -> Mark:
                 says = "Its cell ended the whole program or never ended, so it was left out."
             elif k in outcome.errors:
                 says = stopped_with(outcome.errors[k])
+            elif outcome.note and mark.part not in outcome.readings:
+                says = "The run of the notebook ended before it came to this part."
             else:
                 continue
             return Mark(mark.part, mark.points, mark.out_of, mark.verdict, says, "", mark.section)

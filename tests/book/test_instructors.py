@@ -76,7 +76,7 @@ AFTERWARDS = {
     "dhlib report marks --pseudonyms": Outcome(0, r"marks/grades\.csv"),
     'dhlib forget marks "Ada Lovelace" --yes': Outcome(0, r"Removed: 1 submission"),
 }
-GRADED_FROM_MOODLE = {"dhlib grade moodle.zip --out marks": Outcome(0, r"marks/grades\.csv")}
+GRADED_FROM_MOODLE = {"dhlib grade moodle.zip --exercise quickshot --out marks": Outcome(0, r"marks/grades\.csv")}
 SEEN = '--student "Ada Lovelace" --part slip --points 1 --reason "Seen in class."'
 EVERY = COMMANDS.keys() | CLOSED_COURSE.keys() | GRADED_FROM_MOODLE.keys() | AFTERWARDS.keys()
 #: What Moodle and Canvas call what they give: Moodle a folder, Canvas a file.

@@ -13,11 +13,13 @@ from pathlib import Path
 import pytest
 
 from dhlib.errors import DHError
+from dhlib.grading.asked import Catalogue
 from dhlib.grading.batch.lock import Lock
 from dhlib.grading.batch.run import Shard, grade_class
 from dhlib.grading.batch.store import Certainty, Store
 from dhlib.grading.batch.versions import versions
 from dhlib.grading.batch.work import Grader, Settings, grade
+from dhlib.grading.grade import mark, prepare
 from dhlib.grading.wall import Outcome
 
 RUN = Path(__file__).with_name("quick_run.py")
@@ -244,6 +246,45 @@ def test_what_nobody_can_place_is_listed(hand_in, run):
     assert [s.student for s in submissions] == ["", ""]
     assert all("Nothing says whose it is" in problem.what for problem in problems)
     assert len(problems) == 2
+
+
+def test_of_two_notebooks_that_came_at_once_the_last_by_name_counts_whichever_was_graded_first(hand_in, run):
+    for student, names in (("ada", ["tiny", "tiny-2"]), ("bob", ["tiny-2", "tiny"])):
+        for name in names:
+            folder = hand_in(f"{student}/{name}.ipynb", "a" if name == "tiny-2" else "b")
+            os.utime(folder / f"{student}/{name}.ipynb", (1e9, 1e9))
+            _, submissions, problems = run()
+    assert {s.source: s.points for s in submissions if s.counts} == {"ada/tiny-2.ipynb": 2, "bob/tiny-2.ipynb": 2}
+    assert [p.students for p in problems] == [("ada",), ("bob",)]
+    assert problems[0].what == (
+        "ada/tiny-2.ipynb and ada/tiny.ipynb came together, for tiny. ada/tiny-2.ipynb counts, as the last by its name."
+    )
+    os.utime(folder / "bob/tiny.ipynb", (2e9, 2e9))  # as a matter of fact one came later: nothing is left to look at
+    _, submissions, problems = run()
+    assert [s.source for s in submissions if s.student == "bob" and s.counts] == ["bob/tiny.ipynb"]
+    assert [p.students for p in problems] == [("ada",)]
+
+
+def test_an_exercise_that_hardly_anybody_handed_in_is_listed(hand_in, run, exercises):
+    for suffix in (".py", ".ipynb"):
+        text = (exercises / f"tiny{suffix}").read_text()
+        (exercises / f"other{suffix}").write_text(text.replace('"tiny"', '"other"'))
+    for k in range(20):
+        hand_in(f"s{k:02}/tiny.ipynb", "a")
+    hand_in("eve/other.ipynb", "a", exercise="other")
+    assert run()[2] == []
+    hand_in("zoe/tiny.ipynb", "a")
+    (problem,) = run()[2]
+    assert (problem.source, problem.students) == ("eve/other.ipynb", ("eve",))
+    assert "dhlib export --exercise tiny" in problem.what
+
+
+def test_what_a_run_did_not_reach_is_said_to_be_that(exercises):
+    ready = prepare(json.dumps(notebook("a")).encode(), "tiny.ipynb", Catalogue(exercises))
+    stopped, finished = mark(ready, Outcome(note="It was stopped.")), mark(ready, Outcome())
+    assert "ended before it came to this part" in stopped[0].message
+    assert "ended before" not in finished[0].message
+    assert (stopped[0].verdict, stopped[0].points) == ("open", 0)
 
 
 def test_a_last_attempt_that_cannot_be_read_does_not_count(hand_in, run):

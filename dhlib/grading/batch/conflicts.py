@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import unicodedata
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 
 from dhlib.grading.batch.rows import Certainty, Problem, Submission
 
 UNREADABLE = "unreadable"
+#: An exercise that fewer than one in so many hand in, of those who hand in the most common one, is perhaps a mistake.
+HARDLY_ANYBODY = 20
 
 
 def conflicts(submissions: Sequence[Submission]) -> list[Problem]:
     """What an instructor should look at before handing marks back; nothing was decided but what the sentences say."""
-    return [*_unknown(submissions), *_claimed_twice(submissions), *_contradicted(submissions), *_displaced(submissions)]
+    looks = (_unknown, _claimed_twice, _at_once, _contradicted, _displaced, _astray)
+    return [problem for look in looks for problem in look(submissions)]
 
 
 def _unknown(submissions: Sequence[Submission]) -> Iterator[Problem]:
@@ -45,6 +48,33 @@ def _claimed_twice(submissions: Sequence[Submission]) -> Iterator[Problem]:
             "with the name of the student, and grade again."
         )
         yield Problem(group[0].source, what, (student,))
+
+
+def _at_once(submissions: Sequence[Submission]) -> Iterator[Problem]:
+    """Several notebooks for one exercise, handed in within one minute: which is the last, only their names say."""
+    groups: dict[tuple[str, ...], list[Submission]] = defaultdict(list)
+    for s in submissions:
+        if s.student and s.status != UNREADABLE:
+            groups[s.student, s.exercise, s.place, str(s.sequence), s.submitted[:16]].append(s)
+    for (student, exercise, *_), group in groups.items():
+        sources = sorted({submission.source for submission in group})
+        counting = next((submission.source for submission in group if submission.counts), "")
+        if len(sources) > 1 and counting:
+            what = f"{' and '.join(sources)} came together, for {exercise}. {counting} counts, as the last by its name."
+            yield Problem(counting, what, (student,))
+
+
+def _astray(submissions: Sequence[Submission]) -> Iterator[Problem]:
+    """Notebooks of another exercise than nearly everybody's."""
+    common = Counter(submission.exercise for submission in submissions if submission.exercise)
+    for submission in submissions:
+        most, count = common.most_common(1)[0] if common else ("", 0)
+        if submission.exercise and common[submission.exercise] * HARDLY_ANYBODY < count:
+            what = (
+                f"It is of the exercise {submission.exercise}, and nearly all others are of {most}. It was graded as "
+            )
+            what += f"what it is; `dhlib export --exercise {most}` leaves it out."
+            yield Problem(submission.source, what, (submission.student,) if submission.student else ())
 
 
 def _contradicted(submissions: Sequence[Submission]) -> Iterator[Problem]:

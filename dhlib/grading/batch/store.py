@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import json
+import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
 from datetime import UTC, datetime
@@ -288,10 +289,11 @@ def _settle(db: sqlite3.Connection, student: str) -> None:
     if not student:
         return
     rows = db.execute(
-        "SELECT id, exercise, certainty, source, status FROM submission WHERE student = ? "
-        "ORDER BY sequence, submitted, id",
+        "SELECT id, exercise, certainty, source, status, sequence, submitted FROM submission WHERE student = ?",
         (student,),
     ).fetchall()
+    # Which was graded first is chance, and says nothing; "x-2.ipynb" comes after "x.ipynb".
+    rows.sort(key=lambda row: (row["sequence"], row["submitted"], os.path.splitext(row["source"])[0], row["id"]))
     exercises = {row["exercise"] for row in rows}
     for exercise in exercises:
         attempts = [row for row in rows if row["exercise"] == exercise]

@@ -57,6 +57,7 @@ def class_page(records: Sequence[Record], find: Find, book: str = "") -> str:
         mine = [r for r in records if r.exercise == name or (not r.exercise and len(names) < 2)]
         if mine:
             pages.append(_page(mine, find, book))
+    pages.sort(key=lambda page: -page["students"])
     if len(names) > 1 and (unknown := [record for record in records if not record.exercise]):
         pages.append(_page(unknown, find, book))
     return render("class.html", pages=pages, fewest=FEWEST, rare=RARE)

@@ -21,8 +21,8 @@ ELSEWHERE = {
 }
 #: What they cannot do: a key in a container is a key in the hands of whoever's notebook runs there.
 NO_KEY = (
-    "It marks by the numbers of the book. Notebooks with numbers of a student's own are refused there, since no key of a "
-    "course belongs where students' code runs: collect them, and grade them here with `dhlib grade --key`."
+    "It marks by the numbers of the book. Notebooks with numbers of a student's own are refused there, since no key of "
+    "a course belongs where students' code runs: collect them, and grade them here with `dhlib grade --key`."
 )
 #: These find a student by what a platform calls them.
 BY_NAME = ("moodle", "canvas")
