@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import os
+import platform
 import subprocess
 import sys
 import zlib
 from pathlib import Path
+from typing import Any
 
 BENCH = Path(__file__).parent
 ROOT = BENCH.parent
 ENVIRONMENTS = ROOT / ".bench"
+#: Set where a little of the work is enough: see `size`.
+SMALL = "DHBENCH_SMALL"
 UV = ROOT / ".tools" / "uv" / "bin" / "uv"
+
+
+def size(whole: int, small: int) -> int:
+    """How much of a workload is done: `small` where it is only tried."""
+    return small if os.environ.get(SMALL) else whole
 
 
 class NotToBeHad(Exception):
@@ -49,7 +58,23 @@ def version_of(python: Path, distribution: str) -> str:
     return subprocess.run([python, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
 
 
-def environment_variables() -> dict[str, str]:
-    """Return the variables for a peer: dhlib from this repository, one thread for everybody."""
+def environment_variables(small: bool = False) -> dict[str, str]:
+    """Return the variables for a program: dhlib from this repository, one thread for everybody."""
     one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    return os.environ | one_thread | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore"}
+    told = {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore"} | ({SMALL: "1"} if small else {})
+    return os.environ | one_thread | told
+
+
+def machine() -> dict[str, Any]:
+    """Return what this runs on, and how busy that is at the moment."""
+    model = platform.processor()
+    if Path("/proc/cpuinfo").exists():
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        model = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), model)
+    return {
+        "processor": model,
+        "cores": os.cpu_count(),
+        "system": platform.system(),
+        "python": platform.python_version(),
+        "load": round(os.getloadavg()[0], 1) if hasattr(os, "getloadavg") else None,
+    }

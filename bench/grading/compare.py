@@ -12,6 +12,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -26,10 +27,13 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import work
-from environment import NotToBeHad, python_of, version_of
+from environment import NotToBeHad, python_of, size, version_of
 
-COUNT = 30
-ROUNDS = 3
+COUNT = size(30, 2)
+ROUNDS = size(3, 1)
+#: How long a command may take, in seconds; None is for ever.
+patience: float | None = None
+HUNG = "hung"
 #: Student to part to source, and student to part to whether it is marked right.
 Class = dict[str, dict[str, str]]
 Marks = dict[str, dict[str, bool]]
@@ -55,18 +59,32 @@ class Grader:
 
 
 def run(*words: Any, folder: Path, failing: bool = False) -> str:
-    """Run a command; a grader that ends with an error has not graded."""
-    said = subprocess.run(
+    """Run a command; a grader that ends with an error has not graded.
+
+    Raises
+    ------
+    NotToBeHad
+        If it ends with an error, or is not ready when patience is at its end.
+    """
+    process = subprocess.Popen(
         [str(word) for word in words],
         cwd=folder,
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         text=True,
         env=surroundings(Path(words[0])),
-        check=False,
+        start_new_session=True,
     )
-    if said.returncode != 0 and not failing:
-        raise NotToBeHad(f"{words[0]}: {(said.stderr or said.stdout).strip().splitlines()[-1][:200]}")
-    return said.stdout
+    try:
+        said, complained = process.communicate(timeout=patience)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)  # its kernels too, in so far as they stayed in its group
+        process.communicate()
+        raise NotToBeHad(HUNG) from None
+    if process.returncode != 0 and not failing:
+        last = (complained or said).strip().splitlines()[-1:] or [f"ended with {process.returncode}"]
+        raise NotToBeHad(f"{Path(words[0]).name}: {last[0][:200]}")
+    return said
 
 
 def surroundings(program: Path) -> dict[str, str]:
@@ -77,12 +95,12 @@ def surroundings(program: Path) -> dict[str, str]:
 
 def students(count: int) -> dict[str, dict[str, bool]]:
     """Who hands in, and what is right of it."""
-    return {f"student{k:02d}": right for k, right in enumerate(work.plan(count))}
+    return {f"student{k:0{max(2, len(str(count - 1)))}d}": right for k, right in enumerate(work.plan(count))}
 
 
 def student_in(text: str) -> str:
     """Return the student whom a line is about."""
-    found = re.search(r"student\d\d", text)
+    found = re.search(r"student\d\d+", text)
     if found is None:
         raise NotToBeHad(f"names no student in {text[:80]!r}")
     return found[0]
@@ -90,6 +108,14 @@ def student_in(text: str) -> str:
 
 def with_dhlib(folder: Path, hand_ins: Class) -> Marks:
     """`dhlib grade`, with its sandbox."""
+    dhlib_class(folder, hand_ins)
+    words = ("grade", "handed-in", "--out", "marks", "--exercises", "exercises")
+    timed_run(folder, Path(sys.executable).parent / "dhlib", *words)
+    return marks_of_dhlib(folder)
+
+
+def dhlib_class(folder: Path, hand_ins: Class) -> None:
+    """Write the class for dhlib, and the exercise."""
     for name, sources in hand_ins.items():
         work.write(folder / "handed-in" / name / "two_links.ipynb", work.for_dhlib(sources))
     shutil.copy(Path(__file__).parent / "two_links.py", ensured(folder / "exercises") / "two_links.py")
@@ -98,16 +124,10 @@ def with_dhlib(folder: Path, hand_ins: Class) -> Marks:
         if cell["metadata"]["dh"]["role"] == "answer":
             cell["source"] = [f"{cell['metadata']['dh']['part']} = ..."]
     work.write(folder / "exercises" / "two_links.ipynb", pristine)
-    timed_run(
-        folder,
-        Path(sys.executable).parent / "dhlib",
-        "grade",
-        "handed-in",
-        "--out",
-        "marks",
-        "--exercises",
-        "exercises",
-    )
+
+
+def marks_of_dhlib(folder: Path) -> Marks:
+    """Read the table that `dhlib grade` wrote."""
     marks = {}
     with (folder / "marks" / "grades.csv").open(encoding="utf-8-sig") as file:
         for row in csv.DictReader(file):
@@ -240,9 +260,6 @@ GRADERS = (
     Grader("nbval", "pytest --nbval-lax -n 2 --dist loadscope", nbval("-n", "2", "--dist", "loadscope")),
     Grader("nbclient", "NotebookClient.execute, no marks", with_nbclient),
 )
-
-#: How long a command may take, in seconds; None is for ever.
-patience: float | None = None
 
 #: Seconds of the commands that grade, without what prepares the class.
 _taken: list[float] = []

@@ -24,10 +24,10 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import compare
 import work
-from environment import NotToBeHad
+from environment import NotToBeHad, size
 
 #: Longer than this nobody waits for three notebooks.
-PATIENCE = 300
+PATIENCE = size(300, 60)
 PROBE_PORT = 49_731
 TRACE = Path(tempfile.gettempdir()) / "bench-hostile-trace"
 
@@ -105,8 +105,6 @@ def tried(grader: compare.Grader, attack: str) -> dict[str, Any]:
         try:
             marks = grader.grade(Path(folder), hand_ins) or {}
             ended = ""
-        except subprocess.TimeoutExpired:
-            marks, ended = {}, "hung"
         except (NotToBeHad, OSError, KeyError, ValueError) as why:
             marks, ended = {}, f"ended: {why}"[:120]
         harm = watch.harm()
@@ -123,10 +121,11 @@ def tried(grader: compare.Grader, attack: str) -> dict[str, Any]:
 
 def rows() -> Iterator[dict[str, Any]]:
     """Yield what each grader made of each attack."""
+    tried_attacks = list(ATTACKS.items())[: size(len(ATTACKS), 2)]
     for grader in compare.GRADERS[:-1]:
         if grader.call in ("pytest --nbval-lax, one by one", "pytest --nbval-lax -n 2 --dist loadscope"):
             continue
-        for name, attack in ATTACKS.items():
+        for name, attack in tried_attacks:
             print(f"  hostile: {grader.call}, {name}", file=sys.stderr, flush=True)
             yield {"peer": grader.peer, "call": grader.call, "attack": name, **tried(grader, attack)}
 

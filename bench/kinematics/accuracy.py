@@ -15,12 +15,13 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from environment import size
 from kinematics.contenders import CONTENDERS
 
 from dhlib import Chain, robots
 
 mpmath.mp.dps = 50
-RANDOM, QUARTERS = 500, 200
+RANDOM, QUARTERS = size(500, 20), size(200, 20)
 #: What is smaller is a zero with rounding left on it.
 CRUMB = 1e-12
 

@@ -13,14 +13,15 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from environment import size
 from kinematics.contenders import CONTENDERS
 from pairing import side_by_side
 
 from dhlib import robots
 
-MANY = 100_000
+MANY = size(100_000, 4_000)
 #: A loop in Python has the same rate for fewer.
-MANY_FOR_LOOPS = 5_000
+MANY_FOR_LOOPS = size(5_000, 200)
 SAME = 1e-9
 
 

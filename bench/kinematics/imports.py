@@ -8,9 +8,14 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 from statistics import median
 
-ROUNDS = 9
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from environment import size
+
+ROUNDS = size(9, 1)
 #: What one imports to compute a pose, where that is not the name of the library.
 MODULES = {"pybotics": "pybotics.robot", "ikpy": "ikpy.chain", "visual_kinematics": "visual_kinematics.RobotSerial"}
 

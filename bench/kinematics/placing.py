@@ -11,16 +11,21 @@ import json
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from statistics import median
 from typing import Any
 
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from environment import size
+
 from dhlib import Axis, place_frames
 from dhlib.axes import product_of_exponentials
 
 KINDS = ("skew", "intersecting", "parallel", "antiparallel", "coincident", "mixed")
-ARMS = 100
+ARMS = size(100, 5)
 N = 6
 RIGHT = 1e-6
 

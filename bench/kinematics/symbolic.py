@@ -19,9 +19,11 @@ from sympy.core.cache import clear_cache
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from environment import size
+
 from dhlib import Chain, robots
 
-ROUNDS = 3
+ROUNDS = size(5, 1)
 
 
 def product(arm: Chain) -> Any:
