@@ -34,7 +34,7 @@ endif
 export UV_PYTHON_DOWNLOADS := never
 export UV_NO_CONFIG := 1
 
-.PHONY: help book serve pdf zip lighthouse test lint exercises diagnosis solutions lock bench bench-lock test-library links release venv clean distclean
+.PHONY: help book serve pdf zip lighthouse test coverage mutants lint exercises diagnosis solutions lock bench bench-lock test-library links release venv clean distclean
 .DELETE_ON_ERROR:
 
 help:
@@ -43,12 +43,14 @@ help:
 	@echo 'make pdf        print the whole book into dist/dh-book.pdf (needs Chromium)'
 	@echo 'make zip        pack the book, its notebooks and the library into dist/dh-book.zip, to read offline'
 	@echo 'make test       lint, types and all tests (FULL=1: the long parts whole)'
+	@echo 'make coverage   the tests of the library, and how much of it they run; fails below 95 %'
+	@echo 'make mutants    change the marker and the conventions here and there: does a test notice? (MUTANTS="--each 50")'
 	@echo 'make serve      build the book, serve it on this machine and open it'
 	@echo 'make lint       lint and types only'
 	@echo 'make diagnosis  how well wrong answers are named, for the instructors’ page'
 	@echo 'make exercises  derive the student notebooks from the solutions'
 	@echo 'make solutions  run the worked notebooks again, and keep their outputs'
-	@echo 'make bench      measure beside the peers, into bench/RESULTS.md (needs the network; long)'
+	@echo 'make bench      measure beside the peers, into bench/RESULTS.md (needs the network; long); BENCH="NAME …" some'
 	@echo 'make release    wheel, site, PDF, zip and their checksums, into dist/release'
 	@echo 'make links      ask every address that the book names (needs the network)'
 	@echo 'make lock       pin the newest versions (needs the network)'
@@ -103,6 +105,18 @@ test: lint $(NODE_READY)
 	@echo '── tests ──'
 	@PYTHONPATH=book/build $(RUN) tests/machine.py
 	@$(BIN)/pytest -n auto --dist worksteal $(PYTEST)
+
+# What runs within the sandbox cannot write down which lines it ran; its tests are not left out for that.
+coverage: $(READY)
+	@echo '── how much of dhlib its tests run ──'
+	@rm -f .coverage .coverage.*
+	@$(BIN)/pytest -q -n auto --dist worksteal --cov=dhlib --cov-report= -m 'not book and not browser and not slow' \
+		tests/dhlib tests/grading tests/sandbox dhlib $(PYTEST)
+	@$(RUN) bench/covered.py --least 95
+
+mutants: $(READY)
+	@echo '── does a test notice? ──'
+	@$(RUN) bench/mutation.py $(MUTANTS)
 
 exercises: $(VENV_READY)
 	@$(RUN) -m dhlib.grading.derive

@@ -122,6 +122,9 @@ def main() -> None:
         kept = [row for row in kept if row["module"] != module] + rows
         about = {"date": datetime.date.today().isoformat(), "machine": machine(), "seed": chosen.seed}
         about["versions"] = {"cosmic-ray": version_of(python_of("cosmic_ray"), "cosmic-ray")}
+        for row in rows:
+            if row["outcome"] == "survived":
+                print(f"{module}:{row['line']} {row['operator']}", *row["diff"], sep="\n    ")
         text = json.dumps(about | {"rows": kept}, indent=1, ensure_ascii=False, sort_keys=True)
         target.write_text(text + "\n", encoding="utf-8")
 

@@ -98,8 +98,8 @@ def copy(tmp_path: Path) -> Path:
 def copy_sources(copy: Path) -> Path:
     """Copy what the book is built from."""
     copy.mkdir()
-    ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "*.png")
-    for name in ("dhlib", "book", "exercises", "solutions", "requirements"):
+    ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "*.png", "node_modules")
+    for name in ("dhlib", "book", "exercises", "solutions", "requirements", "bench"):
         if (ROOT / name).exists():
             shutil.copytree(ROOT / name, copy / name, ignore=ignore)
     for name in ("_config.yml", "_toc.yml", "package-lock.json"):

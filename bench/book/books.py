@@ -51,7 +51,7 @@ def contents() -> str:
 def ours() -> Path:
     """Lay out our book of the chapters alone."""
     folder = fresh("ours")
-    ignore = shutil.ignore_patterns("__pycache__")
+    ignore = shutil.ignore_patterns("__pycache__", "node_modules")
     for name in ("dhlib", "book", "exercises", "solutions", "requirements", "bench"):
         shutil.copytree(ROOT / name, folder / name, ignore=ignore)
     for name in ("_config.yml", "package-lock.json"):

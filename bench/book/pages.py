@@ -1,9 +1,9 @@
 """What a reader's phone gets: our pages beside the same chapters as a plain Jupyter Book.
 
 ``python pages.py`` in the book's own environment prints one JSON object. Lighthouse opens both with its simulated
-phone, several times each. What the plain pages fetch from other hosts is served from this machine, under the names of those
-hosts, compressed as there, so that the measurement needs no network; what was asked of them and is not in these copies
-is named. Real hosts are farther away than that: the comparison is kind to the plain book.
+phone, several times each. What the plain pages fetch from other hosts is served from this machine, under the names of
+those hosts, compressed as there, so that the measurement needs no network; what was asked of them and is not in these
+copies is named. Real hosts are farther away than that: the comparison is kind to the plain book.
 """
 
 from __future__ import annotations

@@ -79,6 +79,7 @@ class Watch:
             pass
 
     def __exit__(self, *_: Any) -> None:
+        self.listener.shutdown(socket.SHUT_RDWR)  # or the thread that waits would keep the port
         self.listener.close()
 
     def harm(self) -> list[str]:

@@ -22,7 +22,7 @@ from dhlib.grading.derive import as_text
 from dhlib.grading.exercise import load_exercise
 
 ROOT = Path(__file__).parent.parent.parent
-FOLDERS = ("book", "dhlib", "requirements")
+FOLDERS = ("book", "dhlib", "requirements", "bench")
 FILES = ("_config.yml", "package-lock.json", "pyproject.toml", "pytest_dhlib.py", "README.md", "LICENSE")
 LINKED = ("node_modules", ".tools")
 #: What no page of this edition may come from.
@@ -35,7 +35,7 @@ def stage(root: Path, into: Path) -> Path:
     for old in into.iterdir():
         if old.name != "_build":
             old.unlink() if old.is_symlink() or old.is_file() else shutil.rmtree(old)
-    ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "_exercises")
+    ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "_exercises", "node_modules")
     for folder in FOLDERS:
         shutil.copytree(root / folder, into / folder, ignore=ignore)
     for file in FILES:
