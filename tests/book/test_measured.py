@@ -12,13 +12,13 @@ from typing import Any
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
-sys.path.append(str(ROOT / "bench"))
+sys.path.append(str(Path(__file__).parents[2] / "bench"))
 
 import charts
 import report
 import run
 
+ROOT = Path(__file__).parents[2]
 RESULTS = ROOT / "bench" / "results"
 STORED = sorted(path.stem for path in RESULTS.glob("*.json"))
 NAMES = [make.__name__ for make in report.REPORTED]
