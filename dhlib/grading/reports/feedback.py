@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -24,6 +25,8 @@ from dhlib.grading.sections import named
 #: Verdicts in black and white, for those who do not see the colours.
 SIGNS = {RIGHT: "✓", FOLLOWS: "✓", NEARLY: "≈", WRONG: "✗", OPEN: "○", UNREADABLE: "?"}
 
+#: Answers kept at a time: those who think alike answer alike.
+ALIKE = 256
 #: Exercises that are kept at a time: with numbers of their own, each student has another.
 KEPT = 64
 
@@ -97,10 +100,8 @@ def feedback_page(record: Record, find: Find, book: str = "", reveal: bool = Fal
 def _told(answer: Answer, exercise: Exercise | None, book: str, reveal: bool, styles: list[str]) -> Told:
     row = answer.row
     part = _part(exercise, row.part)
-    reading: Any = None if answer.passed or part is None else row.reading
-    drawing = None
-    if part is not None and reading is not None and (sketch := picture(part, reading)):
-        drawing, style = drawn(sketch)
+    shown, drawing, style = _pictured(part, row.answer, reveal) if part and not answer.passed else (None, None, "")
+    if style:
         styles.append(style)
     heading, chapter = named(row.section)
     verdict = row.verdict if row.verdict in HEADLINES else UNREADABLE
@@ -112,9 +113,18 @@ def _told(answer: Answer, exercise: Exercise | None, book: str, reveal: bool, st
         heading,
         chapter,
         link(book, row.section),
-        show(part, reading, reveal) if part is not None and reading is not None else None,
+        shown,
         drawing,
     )
+
+
+@lru_cache(maxsize=ALIKE)
+def _pictured(part: Part, text: str, reveal: bool) -> tuple[Shown | None, Markup | None, str]:
+    """An answer, given as JSON, as the page shows and draws it, and the style that its drawing needs."""
+    reading: Any = json.loads(text)
+    sketch = picture(part, reading)
+    drawing, style = drawn(sketch) if sketch else (None, "")
+    return show(part, reading, reveal), drawing, style
 
 
 def _part(exercise: Exercise | None, name: str) -> Part | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ from dhlib.table import DEFAULT_COLUMNS
 #: More rows or columns are no table that anybody reads.
 MOST = 24
 LONGEST_CELL = 60
+#: Parts of which the right values are kept.
+KEPT = 256
 #: What a chain that was handed in as a table says of a joint without an offset.
 NO_OFFSET = " + (0.0)"
 SAME, DIFFERS = "same", "differs"
@@ -138,7 +141,7 @@ def _values(part: Part, asks: Valued, reading: Mapping[str, Any], reveal: bool) 
     values = read_values(reading, (len(probes), *asks.shape))
     if values is None:
         return None
-    right = asks.values(part.chain)
+    right = _right(part)
     k, where = 0, ""
     differs: Any = None
     if asks.means is None:  # else different values may mean the same
@@ -150,6 +153,13 @@ def _values(part: Part, asks: Valued, reading: Mapping[str, Any], reveal: bool) 
     caption = f"Your {part.id}{where}"
     answer = _grid(caption, values[k], differs)
     return Shown(answer, _grid("What it should be", right[k]) if reveal else None)
+
+
+@lru_cache(maxsize=KEPT)
+def _right(part: Part) -> FloatArray:
+    """What is right; not to be changed, since it is kept for the next student."""
+    assert isinstance(part.asks, Valued)
+    return part.asks.values(part.chain)
 
 
 def _where(asks: Valued, k: int, wrong: int, count: int) -> str:
