@@ -38,6 +38,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except DHError as error:
         print(f"dhlib: {error}", file=sys.stderr)
         return MISUSE
+    except OSError as error:
+        if error.filename is None:  # no file that somebody named
+            raise
+        print(f"dhlib: {error.filename}: {error.strerror}.", file=sys.stderr)
+        return MISUSE
     except KeyboardInterrupt:
         print("dhlib: stopped.", file=sys.stderr)
         return 130

@@ -107,6 +107,11 @@ def test_out_that_is_a_file_is_said(tmp_path, capsys):
     assert "is a file" in capsys.readouterr().err
 
 
+def test_what_the_system_refuses_is_said(tmp_path, capsys):
+    assert main(["grade", str(tmp_path), "--out", str(tmp_path / ("x" * 300))]) == 2
+    assert capsys.readouterr().err.endswith("x: File name too long.\n")
+
+
 @pytest.mark.parametrize("cell", ["=1+1", "+1", "-x", "@x", "\t=1", " =1", "\r=1"])
 def test_formulas_are_quoted(cell):
     assert safe(cell).startswith("'")

@@ -227,6 +227,17 @@ def test_metadata_tells_only_where_the_place_does_not(hand_in, run):
     assert problem.students == ("ada", "carl")
 
 
+def test_the_work_of_somebody_who_handed_in_nothing_is_told_by_the_roster(hand_in, run):
+    class Carl:
+        id, name = "s3", "Carl"
+
+    hand_in("ada/tiny.ipynb", "a", student="carl")
+    assert run()[2] == []
+    problems = run(roster=lambda names: Carl() if "carl" in names else None)[2]
+    (problem,) = (problem for problem in problems if "roster" not in problem.what)
+    assert problem.what == "It says that it is of s3, but it was found where ada's work is."
+
+
 def test_two_places_that_claim_one_student_are_listed_and_both_kept(hand_in, run):
     hand_in("ada/tiny.ipynb", "b")
     hand_in("x.ipynb", "a")

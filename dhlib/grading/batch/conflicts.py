@@ -6,6 +6,7 @@ import unicodedata
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 
+from dhlib.grading.batch.intake import Lookup
 from dhlib.grading.batch.rows import Certainty, Problem, Submission
 
 UNREADABLE = "unreadable"
@@ -13,10 +14,17 @@ UNREADABLE = "unreadable"
 HARDLY_ANYBODY = 20
 
 
-def conflicts(submissions: Sequence[Submission]) -> list[Problem]:
-    """What an instructor should look at before handing marks back; nothing was decided but what the sentences say."""
-    looks = (_unknown, _claimed_twice, _at_once, _contradicted, _displaced, _astray)
-    return [problem for look in looks for problem in look(submissions)]
+def conflicts(submissions: Sequence[Submission], roster: Lookup | None = None) -> list[Problem]:
+    """What an instructor should look at before handing marks back; nothing was decided but what the sentences say.
+
+    Parameters
+    ----------
+    submissions : sequence of Submission
+    roster : callable, optional
+        Who goes by a name: also who handed in nothing else.
+    """
+    looks = (_unknown, _claimed_twice, _at_once, _displaced, _astray)
+    return [*_contradicted(submissions, roster), *(problem for look in looks for problem in look(submissions))]
 
 
 def _unknown(submissions: Sequence[Submission]) -> Iterator[Problem]:
@@ -77,7 +85,7 @@ def _astray(submissions: Sequence[Submission]) -> Iterator[Problem]:
             yield Problem(submission.source, what, (submission.student,) if submission.student else ())
 
 
-def _contradicted(submissions: Sequence[Submission]) -> Iterator[Problem]:
+def _contradicted(submissions: Sequence[Submission], roster: Lookup | None) -> Iterator[Problem]:
     """Notebooks that say that they are somebody else's."""
     known = {_plain(name): s.student for s in submissions if s.student for name in (s.student, s.name)}
     claimants: dict[str, set[str]] = defaultdict(set)
@@ -88,7 +96,8 @@ def _contradicted(submissions: Sequence[Submission]) -> Iterator[Problem]:
         claims = _plain(submission.claims)
         if not claims or submission.certainty <= Certainty.METADATA:
             continue
-        meant = known.get(claims)
+        person = roster([submission.claims]) if roster and claims not in known else None
+        meant = person.id if person else known.get(claims)
         if meant == submission.student:
             continue
         if meant is not None:

@@ -125,7 +125,7 @@ def grade_class(
         run = _Run(store, settings, regrade, quiet)
         intake = _share(collect(sources, names(settings.exercises), roster), shard)
         run.go(intake, workers)
-        store.replace_problems([*intake.problems, *conflicts(store.submissions())])
+        store.replace_problems([*intake.problems, *conflicts(store.submissions(), roster)])
         return run.summary(intake)
 
 

@@ -42,6 +42,7 @@ def execute(notebook: dict[str, Any], folder: str | Path = ".") -> dict[str, Any
         kernel_name="python3",
         record_timing=False,
         coalesce_streams=True,
+        extra_arguments=["--log-level=ERROR"],  # what it warns of is nothing that its user can change
         resources={"metadata": {"path": str(folder)}},
     )
     try:

@@ -147,7 +147,7 @@ def _rule(store: Store, options: argparse.Namespace) -> tuple[str, tuple[str, ..
             reason=options.reason.strip(),
         ),
     )
-    told = [f"due {due.replace('+00:00', ' UTC').replace('T', ' ')}" if due else ""]
+    told = [f"due {due.replace('T', ' ').replace('+00:00', ' UTC')}" if due else ""]
     told.append(str(LateRule.read(options.late, options.grace)) if options.late else "")
     return (
         f"{student or 'All'}: {'; '.join(text for text in told if text)} (rule {kept}).",

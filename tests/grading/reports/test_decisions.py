@@ -147,8 +147,9 @@ def test_one_may_have_more_time_than_others(class_of_three):
     assert points(class_of_three)["bob"] == 0.7
 
 
-def test_a_due_time_without_a_rule_costs_nothing(class_of_three):
+def test_a_due_time_without_a_rule_costs_nothing(class_of_three, capsys):
     run(class_of_three, "adjust", "--due", "2026-11-20T20:00+00:00")
+    assert "All: due 2026-11-20 20:00:00 UTC" in capsys.readouterr().out
     assert points(class_of_three)["ada"] == 1
     assert "30 minutes late" in (class_of_three / "feedback" / "Ada_Müller.html").read_text("utf-8")
     run(class_of_three, "adjust", "--late", "2%/day")  # the due time stays
