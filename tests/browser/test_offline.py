@@ -18,7 +18,10 @@ from serve import server
 
 pytestmark = [pytest.mark.book, pytest.mark.browser]
 
+THREE_MINUTES = 180_000
 KEPT = "caches.open('dh-book').then(c => c.keys()).then(keys => keys.map(k => k.url))"
+#: How often the number of files that are kept may be the same, ten times a second, before the worker counts as stuck.
+PATIENCE = 1200
 #: Without what a page keeps when it is used, such as what runs its cells.
 AT_ONCE = f"{KEPT}.then(urls => urls.filter(url => !url.includes('/run/')))"
 
@@ -59,8 +62,15 @@ def visit(browser: Any, home: Site, path: str = "book/index.html") -> Any:
     """Visit a page for the first time, until its worker is at work."""
     page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
     page.goto(f"{home.address}/{path}")
-    page.evaluate("navigator.serviceWorker.ready")
-    page.wait_for_function("navigator.serviceWorker.controller")
+    assert page.evaluate(f"""async () => {{
+        for (let [count, patience] = [0, {PATIENCE}]; patience > 0; patience--) {{
+            if (navigator.serviceWorker.controller) return true;
+            await new Promise(done => setTimeout(done, 100));
+            const now = (await {KEPT}).length;
+            if (now !== count) [count, patience] = [now, {PATIENCE}];
+        }}
+        return false;
+    }}"""), "nothing more was kept for a long while, and no worker is at work"
     return page
 
 
@@ -91,8 +101,9 @@ def test_after_one_visit_every_page_opens_without_the_network(browser: Any, home
     page.goto(f"{home.address}/search.html?q=twist")
     page.wait_for_selector("#search-results li a")
     page.goto(f"{home.address}/book/pa10.html")
-    page.locator("dh-robot").scroll_into_view_if_needed()
-    page.wait_for_function("document.querySelector('dh-robot').space")
+    # Sections get their sizes as they come near, so that the arm may move away once more.
+    arrived = "() => { const arm = document.querySelector('dh-robot'); arm.scrollIntoView(); return arm.space; }"
+    page.wait_for_function(arrived, timeout=THREE_MINUTES)
     before = page.locator("dh-robot .matrix").inner_text()
     page.locator("dh-robot input[type=range]").first.press("End")
     page.wait_for_timeout(100)

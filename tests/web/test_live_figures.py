@@ -26,12 +26,16 @@ ROBOTS = {"#live-fig-pa10": robots.pa10_7c(), "#live-robot-2": robots.stanford()
 PLACES = {"#live-fig-quickshot": robots.quickshot(), "#live-place-2": robots.puma560().to_modified()}
 EVERY = [*LINKS, *ROBOTS, *PLACES]
 
+THREE_MINUTES = 180_000
+
 
 def wake(page: Any) -> None:
     """Scroll past every figure, so that what loads late loads."""
     for figure in EVERY:
-        page.locator(figure).scroll_into_view_if_needed()
-    page.wait_for_function("[...document.querySelectorAll('dh-robot')].every(r => r.space || !r.canvas.isConnected)")
+        page.locator(figure).evaluate("figure => figure.scrollIntoView()")
+        drawn(page)
+    awake = "[...document.querySelectorAll('dh-robot')].every(r => r.space || !r.canvas.isConnected)"
+    page.wait_for_function(awake, timeout=THREE_MINUTES)
     page.wait_for_timeout(100)
 
 
@@ -548,7 +552,7 @@ def test_the_elbow_goes_round_while_the_hand_rests(page: Any) -> None:
 
 def test_a_cell_can_set_and_read_the_joints(page: Any) -> None:
     q = [0.1, -0.2, 0.3, 0.4, -0.5, 0.6, 0.7]
-    page.evaluate(f"document.querySelector('#live-fig-pa10').joints = {q}")
+    page.evaluate(f"document.querySelector('#live-fig-pa10').take({{q: {q}}})")
     assert np.allclose(page.evaluate("document.querySelector('#live-fig-pa10').joints"), q)
     assert np.abs(shown_matrix(page, "#live-fig-pa10") - robots.pa10_7c().fk(q)).max() < 6e-4
 
