@@ -13,9 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from formulas import ROOT
+from sphinx.util import logging
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
+
+logger = logging.getLogger(__name__)
 
 #: What to look for, and what to write instead.
 MENDS = (
@@ -23,6 +26,9 @@ MENDS = (
     (re.compile(r'(<button class="[^"]*search-button-field[^"]*") title="Search" aria-label="Search"'), r"\1"),
     (re.compile(r'<summary aria-label="Toggle hidden content">'), "<summary>"),
 )
+#: The theme asks at once of every listing whether it scrolls, and so has the whole page laid out; scrolling.js waits.
+THEME = "_static/scripts/pydata-sphinx-theme.js"
+ASKS = re.compile(r"\b(\w+)\.tabIndex=\1\.scrollWidth>\1\.clientWidth\|\|\1\.scrollHeight>\1\.clientHeight\?0:-1")
 LEADS_ON = re.compile(r'<meta http-equiv="Refresh" content="0; url=([^"]+)" */?>', re.IGNORECASE)
 
 
@@ -61,6 +67,17 @@ def mend_pages(app: Sphinx, exception: Exception | None) -> None:
         start.write_text(first_page(found[1], str(app.config.html_title or app.config.project)), "utf-8")
 
 
+def leave_tabs_to_us(app: Sphinx, exception: Exception | None) -> None:
+    """Take out of the theme's script what `scrolling.js` does."""
+    path = Path(app.outdir) / THEME
+    if exception is not None or app.builder.name != "html":
+        return
+    script, found = ASKS.subn("0/* scrolling.js */", path.read_text("utf-8"))
+    if not found and "scrolling.js" not in script:
+        logger.warning("%s no longer asks what scrolls in the way that is known: see accessible.py", THEME)
+    path.write_text(script, "utf-8")
+
+
 def add_scripts(app: Sphinx) -> None:
     """Give every page its scripts."""
     for name in ("scrolling.js", "focus.js"):
@@ -71,4 +88,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
     app.connect("builder-inited", add_scripts)
     app.connect("build-finished", mend_pages, priority=650)
+    app.connect("build-finished", leave_tabs_to_us, priority=650)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -2,7 +2,7 @@
 
 The theme and the extensions each bring their own files, one imports another, and every one is a journey to the server
 before the first word is shown. The sheets of a page are joined in their order; scripts in the head are deferred, which
-keeps theirs.
+keeps theirs. Bootstrap's watch over the contents, which lays out all that was left for later, gives way to ours.
 """
 
 from __future__ import annotations
@@ -25,6 +25,8 @@ ADDRESS = re.compile(r"url\((?![\"']?data:)[\"']?([^\"')]+)[\"']?\)")
 IN_HEAD = re.compile(r'<script(?![^>]*\b(?:defer|async|type)\b)([^>]*\bsrc="[^"]+")')
 PRELOADED = re.compile(r'[ \t]*<link rel="preload" as="script"[^>]*/?>\n?')
 DUMMY = re.compile(r'[ \t]*<script[^>]*src="[^"]*/fontawesome\.js[^"]*"></script>\n?')
+SPY = re.compile(r' data-(?:bs-spy|bs-target|offset|bs-root-margin)="[^"]*"')
+BODY = re.compile(r"<body[^>]*>")
 PAGE_NAME = re.compile(r"<script>(DOCUMENTATION_OPTIONS\.\w+ = '[^']*';)</script>")
 
 
@@ -56,7 +58,7 @@ def quickened(page: str, link: str) -> str:
         head = head[: found.start()] + link + SHEET.sub("", head[found.start() :])
     head = IN_HEAD.sub(r"<script defer\1", head)
     head = PAGE_NAME.sub(r'<script>addEventListener("DOMContentLoaded", () => { \1 });</script>', head)
-    return head + mark + rest
+    return head + mark + BODY.sub(lambda found: SPY.sub("", found[0]), rest, count=1)
 
 
 def sheets_of(page: str, folder: Path, site: Path) -> tuple[Path, ...]:
@@ -93,8 +95,9 @@ def quicken_pages(app: Sphinx, exception: Exception | None) -> None:
 
 
 def add_script(app: Sphinx) -> None:
-    """Give every page the script that lets links find their section."""
-    app.add_js_file(None, body=(ROOT / "book" / "web" / "sections.js").read_text("utf-8"))
+    """Give every page the scripts that let links find their section, and contents follow the reader."""
+    for name in ("sections", "contents"):
+        app.add_js_file(None, body=(ROOT / "book" / "web" / f"{name}.js").read_text("utf-8"))
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
