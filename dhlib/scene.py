@@ -6,6 +6,7 @@ from the page (``--dh-x`` and the others of `palette`), so that one drawing serv
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -34,6 +35,8 @@ END_ON = 7.0
 KINDS = ("length", "line", "body", "guide", "arrow", "dashed", "bare")
 DASHES = {"dashed": "5 4", "axis": "11 3 2 3", "guide": "1.5 3.5"}
 THICKNESS = {"arrow": 2.2, "body": 6.0, "length": 7.0, "axis": 1.1, "guide": 1.5, "arc": 1.5, "symbol": 1.3}
+#: What bars are edged with, so that they stand out from the ground and axes stand out from them.
+RIM = 0.8
 
 Point = FloatArray
 
@@ -420,15 +423,23 @@ class _Canvas:
     def segment(self, segment: Segment, kind: str, colour: str) -> None:
         ends, depth = self.flat([segment.start, segment.end])
         if kind == "body":
-            self.stroke(1, depth, f'<path class="body b" d="{_path(ends)}"/>')
+            self._bar(ends, depth)
         elif kind == "arrow":
             self._arrow_svg(4, depth, ends, colour, dashed=False)
+        elif kind == "length":
+            for mark in ("le", "lg", "l"):
+                self.stroke(1, depth, f'<path class="{_join(colour, mark)}" d="{_path(ends)}"/>')
         elif kind != "bare":
-            mark = {"length": "l", "line": "", "guide": "gu", "dashed": "da"}[kind]
-            self.stroke(1 if kind == "length" else 3, depth, f'<path class="{_join(colour, mark)}" d="{_path(ends)}"/>')
+            mark = {"line": "", "guide": "gu", "dashed": "da"}[kind]
+            self.stroke(3, depth, f'<path class="{_join(colour, mark)}" d="{_path(ends)}"/>')
         self.keep_free(ends, THICKNESS["body"] if kind in ("body", "bare", "length") else 2)
         if segment.label:
             self.labels.append(Label(segment.label, colour, beside(*ends)))
+
+    def _bar(self, ends: FloatArray, depth: float) -> None:
+        """A piece of a link; all rims lie below all bars, so that pieces that meet have one rim."""
+        self.stroke(1, -math.inf, f'<path class="muted br" d="{_path(ends)}"/>')
+        self.stroke(1, depth, f'<path class="body b" d="{_path(ends)}"/>')
 
     def arc(self, arc: Arc, radius: float, colour: str) -> None:
         if abs(arc.angle) < np.deg2rad(1):
@@ -450,7 +461,7 @@ class _Canvas:
         foot = joint.foot
         if np.linalg.norm(joint.centre - foot) > 1e-9 * length:
             ends, depth = self.flat([foot, joint.centre])
-            self.stroke(1, depth, f'<path class="body b" d="{_path(ends)}"/>')
+            self._bar(ends, depth)
             self.keep_free(ends, THICKNESS["body"])
         _, depth = self.flat(joint.centre)
         half = length / 2 * joint.axis
@@ -630,6 +641,9 @@ def _style(theme: str) -> str:
         f" .ar{{stroke-width:{THICKNESS['arc']}}}",
         " .gr{stroke-width:2.6}",
         f" .b{{stroke-width:{THICKNESS['body']}}}",
+        f" .br{{stroke-width:{THICKNESS['body'] + 2 * RIM}}}",
+        f" .le{{stroke-width:{THICKNESS['length'] + 2 * RIM};stroke-linecap:butt}}",
+        f" .lg{{stroke:{_colour('ground', theme)};stroke-width:{THICKNESS['length']};stroke-linecap:butt}}",
         f" .l{{stroke-width:{THICKNESS['length']};stroke-linecap:butt;opacity:.35}}",
         f" .jo{{fill:{_colour('faint', theme)};stroke:{_colour('muted', theme)};stroke-width:{THICKNESS['symbol']}}}",
         f" .jl{{stroke:{_colour('muted', theme)};stroke-width:{THICKNESS['symbol']}}}",
