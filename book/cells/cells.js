@@ -1,17 +1,21 @@
 // The cells of a page: Run, Edit, Reset, Stop, Run all above.
 
-import { hash, kept, make } from "./make.js";
+import { hash, kept } from "./kept.js";
+import { make } from "../web/make.js";
 import { Outputs } from "./outputs.js";
 import { Session, Stopped } from "./session.js";
 
 const script = document.currentScript;
 const TALLEST_SCREEN = 480;
+const DRAWS = /^\s*(import|from)\s+(matplotlib|dhlib\.plot)\b|^\s*from\s+dhlib\s+import\b.*\bplot\b/m;
 
 /** What the page says of its cells. */
 export const page = JSON.parse(document.getElementById("dh-cells").textContent);
 export const root = new URL(page.root, location.href).href;
 export const session = new Session(root, page.python);
 
+/** The host that has what the book does not serve. */
+const elsewhere = new URL(page.python.elsewhere).host;
 const fromDisk = location.protocol === "file:";
 export const SERVE = "To run code, serve the book: in its folder, python -m http.server, then open http://localhost:8000 here.";
 const store = `dh-cells ${page.name}`;
@@ -38,10 +42,11 @@ async function run(cell, output) {
   const { text } = cell;
   const generation = session.generation;
   let error = "";
-  const good = await session.run(text, `cell ${cell.number ?? "of the page"}`, (one) => {
+  const heard = (one) => {
     if (one.output_type === "error") error = one.evalue ? `${one.ename}: ${one.evalue}` : one.ename;
     output(one);
-  });
+  };
+  const good = await session.run(text, `cell ${cell.number ?? "of the page"}`, heard, DRAWS.test(text) ? ["matplotlib"] : []);
   cell.error = error;
   if (generation === session.generation) cell.ran = good ? text : null;
   return good;
@@ -90,6 +95,7 @@ export class Cell {
     const buttons = this.about.elsewhere ? [] : [this.runButton, this.stopButton];
     this.bar.append(...buttons, this.editButton, this.resetButton, ...(this.about.elsewhere ? [] : above), this.progress, this.status);
     if (this.about.elsewhere) this.say(`This cell needs ${this.about.elsewhere}, which does not run in a page: take the notebook.`);
+    if (this.about.mpl) this.say(`This cell draws with matplotlib. Run asks before it is taken from ${elsewhere}.`);
   }
 
   say(text) {
@@ -182,9 +188,8 @@ export class Cell {
 
   /** Matplotlib alone is not served by the book: ask before the browser takes it from elsewhere. */
   async #mayFetch(due) {
-    if (session.fetches || !due.some(({ text }) => /^\s*(import|from)\s+matplotlib\b/m.test(text))) return true;
-    const { host } = new URL(page.python.elsewhere);
-    this.say(`matplotlib is not served by this book. Your browser would take it from ${host}, which then sees your address.`);
+    if (session.fetches || !due.some(({ text }) => DRAWS.test(text))) return true;
+    this.say(`matplotlib is not served by this book. Your browser would take it from ${elsewhere}, which then sees your address.`);
     return new Promise((done) => {
       const choose = (yes) => {
         question.remove();
@@ -193,7 +198,7 @@ export class Cell {
         done(yes);
       };
       const question = make("span", { class: "dh-ask" },
-        make("button", { type: "button", click: () => choose(true) }, `Take it from ${host}`),
+        make("button", { type: "button", click: () => choose(true) }, `Take it from ${elsewhere}`),
         make("button", { type: "button", click: () => choose(false) }, "Do not run"));
       this.status.after(question);
       question.firstChild.focus();

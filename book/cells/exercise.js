@@ -1,7 +1,8 @@
 // An exercise in the page: a Check for each part, points, hints that stay open, and the notebook to hand in.
 
 import { cells, inTurn, items, page, root, session, SERVE } from "./cells.js";
-import { kept, make } from "./make.js";
+import { kept } from "./kept.js";
+import { make } from "../web/make.js";
 import { Stopped } from "./session.js";
 import { PROGRESS, number, of } from "./points.js";
 
@@ -80,7 +81,7 @@ class Part {
 // All of it
 
 const panel = document.querySelector(".dh-part.dh-all");
-const sum = make("span", { role: "status" });
+const sum = panel.querySelector("[role=status]");
 
 function total() {
   if (exercise.parts.some(({ points }) => points === null)) return;
@@ -110,9 +111,9 @@ async function save(button) {
   link.remove();
 }
 
-const saving = make("button", { type: "button", click: () => save(saving) }, "Save as notebook");
-panel?.append(sum, saving, ...(exercise.progress ? [make("a", { href: exercise.progress }, "All exercises")] : []));
-if (exercise.honest) panel?.append(make("p", { class: "dh-honest" }, exercise.honest));
+const saving = panel.querySelector("button");
+saving.addEventListener("click", () => save(saving));
+saving.disabled = false;
 
 export const parts = page.cells.filter(({ role }) => role === "check").map((about) => new Part(about));
 total();

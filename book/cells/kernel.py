@@ -17,6 +17,8 @@ from typing import Any
 
 from IPython.lib.pretty import pretty
 
+from dhlib import live
+
 Output = dict[str, Any]
 #: What a notebook shows of a value, beside its text.
 FORMS = {
@@ -64,7 +66,7 @@ class Kernel:
         """Send an output of the cell that runs."""
         self.post(json.dumps(output))
 
-    def run(self, source: str, name: str) -> bool:
+    def run(self, source: str, name: str, figures: str = "{}") -> bool:
         """Run a cell; says whether it ended well.
 
         Parameters
@@ -72,7 +74,10 @@ class Kernel:
         source : str
         name : str
             What a traceback calls it.
+        figures : str
+            The states of the page's live figures as JSON, for `dhlib.live`.
         """
+        live.page = live.Page(json.loads(figures), self.show_in_figure)
         file = f"<{name}>"
         linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
         with redirect_stdout(Stream("stdout", self.send)), redirect_stderr(Stream("stderr", self.send)):
@@ -100,6 +105,10 @@ class Kernel:
             if value is not None:
                 self.names["_"] = value
                 self.send({"output_type": "execute_result", "data": forms(value), "metadata": {}})
+
+    def show_in_figure(self, name: str, entries: dict[str, Any]) -> None:
+        """Let a live figure of the page show something."""
+        self.send({"output_type": "figure", "name": name, "entries": entries})
 
     def show_plots(self) -> None:
         """Show what matplotlib has drawn and not shown, as a notebook does."""

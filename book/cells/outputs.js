@@ -1,6 +1,6 @@
 // Outputs of a cell, as the book shows them.
 
-import { make } from "./make.js";
+import { make } from "../web/make.js";
 
 const ORDER = ["text/html", "image/svg+xml", "text/markdown", "text/latex", "text/plain"];
 const FORBIDDEN = "script, iframe, object, embed, link, meta, form, base";

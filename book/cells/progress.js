@@ -1,6 +1,7 @@
 // The reader's progress: all exercises with their points, to keep as a file and to bring from one.
 
-import { kept, make } from "./make.js";
+import { kept } from "./kept.js";
+import { make } from "../web/make.js";
 import { PROGRESS, of } from "./points.js";
 
 const FORMAT = "dh-book progress 1";
@@ -8,25 +9,25 @@ const OURS = /^dh-(progress$|cells exercises\/|hints )/;
 
 const place = document.querySelector(".dh-progress");
 const exercises = JSON.parse(document.getElementById("dh-exercises").textContent);
-const said = make("p", { role: "status" });
+const [saving, forgetting] = place.querySelectorAll("button");
+const file = place.querySelector("input");
+const said = place.querySelector("[role=status]");
 
-function rows() {
+/** Fill the rows, which the build has written with no points. */
+function show() {
   const progress = kept.read(PROGRESS) ?? {};
-  return exercises.map(({ name, title, address, parts }) => {
+  exercises.forEach(({ name, title, parts }, k) => {
     const earned = progress[name]?.parts ?? {};
     const points = parts.reduce((sum, { id }) => sum + (earned[id]?.points ?? 0), 0);
     const all = parts.reduce((sum, part) => sum + part.points, 0);
     const done = parts.filter(({ id }) => earned[id]?.passed).length;
-    return make("tr", {},
-      make("th", { scope: "row" }, make("a", { href: address }, title)),
-      make("td", {}, `${done} of ${parts.length}`),
-      make("td", {}, of(points, all)),
-      make("td", {}, make("progress", { max: all, value: points, "aria-label": `${title}: ${of(points, all)}` })));
+    const [, count, sum, picture] = place.querySelectorAll("tbody tr")[k].cells;
+    count.textContent = `${done} of ${parts.length}`;
+    sum.textContent = of(points, all);
+    picture.firstChild.value = points;
+    picture.firstChild.setAttribute("aria-label", `${title}: ${of(points, all)}`);
   });
 }
-
-const body = make("tbody");
-const show = () => body.replaceChildren(...rows());
 
 function written() {
   const entries = Object.keys(localStorage).filter((key) => OURS.test(key)).map((key) => [key, kept.read(key)]);
@@ -64,15 +65,19 @@ function forget() {
   for (const key of Object.keys(localStorage)) if (OURS.test(key)) kept.write(key, null);
   show();
   for (const badge of document.querySelectorAll(".dh-badge")) badge.remove();
+  forgetting.textContent = "Forget all";
+  delete forgetting.dataset.sure;
   said.textContent = "Forgotten: points, answers and opened hints.";
 }
 
-const file = make("input", { type: "file", accept: "application/json,.json", id: "dh-progress-file", class: "dh-file", change: () => { if (file.files[0]) load(file.files[0]); file.value = ""; } });
-const saving = make("button", { type: "button", click: () => save(saving) }, "Save as a file");
-const forgetting = make("button", { type: "button", click: () => (forgetting.dataset.sure ? forget() : Object.assign(forgetting, { textContent: "Really forget all of it?" }).setAttribute("data-sure", "")) }, "Forget all");
-place.replaceChildren(
-  make("div", { class: "pst-scrollable-table-container" }, make("table", { class: "table" },
-    make("thead", {}, make("tr", {}, ...["Exercise", "Parts done", "Points", ""].map((text) => make(text ? "th" : "td", text ? { scope: "col" } : {}, text)))), body)),
-  make("div", { class: "dh-buttons" }, saving, make("label", { for: "dh-progress-file" }, "Take from a file: "), file, forgetting),
-  said);
+file.addEventListener("change", () => {
+  if (file.files[0]) load(file.files[0]);
+  file.value = "";
+});
+saving.addEventListener("click", () => save(saving));
+forgetting.addEventListener("click", () => {
+  if (forgetting.dataset.sure) forget();
+  else Object.assign(forgetting, { textContent: "Really forget all of it?" }).dataset.sure = "asked";
+});
+for (const control of [saving, file, forgetting]) control.disabled = false;
 show();

@@ -1,5 +1,7 @@
 // The Python of a page: a worker that starts at the first Run, runs one thing after the other, and ends at Stop.
 
+import { figures, take } from "./shared.js";
+
 export class Stopped extends Error {}
 export class Broken extends Error {}
 
@@ -57,9 +59,10 @@ export class Session {
     });
   }
 
-  /** Run source; `output` is called with each output as it comes. Says whether it ended well. */
-  run(source, name, output) {
-    return this.#ask({ type: "run", source, name }, output);
+  /** Run source; `output` is called with each output as it comes. Says whether it ended well. Packages are fetched first. */
+  async run(source, name, output, packages = []) {
+    await this.start(); // figures may be moved until then
+    return this.#ask({ type: "run", source, name, packages, figures: figures() }, (one) => (one.output_type === "figure" ? take(one) : output(one)));
   }
 
   /** Call a Python function with plain values. */

@@ -64,8 +64,8 @@ onmessage = async ({ data }) => {
   try {
     if (data.type === "boot") await boot(data);
     // The page has asked its reader before it sends such a cell.
-    if (data.type === "run" && /^\s*(import|from)\s+matplotlib\b/m.test(data.source)) await python.loadPackage("matplotlib");
-    if (data.type === "run") tell({ type: "ran", id: data.id, good: kernel.run(data.source, data.name) });
+    if (data.packages?.length) await python.loadPackage(data.packages);
+    if (data.type === "run") tell({ type: "ran", id: data.id, good: kernel.run(data.source, data.name, JSON.stringify(data.figures)) });
     if (data.type === "call") {
       // A function of a module of the page, with plain values in and JSON out.
       tell({ type: "called", id: data.id, result: JSON.parse(kernel.call(data.module, data.name, JSON.stringify(data.values))) });

@@ -7,15 +7,12 @@ need, without what only feeds the book's text. All else waits under ``run/`` unt
 from __future__ import annotations
 
 import ast
-import hashlib
 import html
 import importlib.util
 import io
-import json
 import posixpath
 import re
 import shutil
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -24,7 +21,17 @@ from typing import TYPE_CHECKING, Any
 import nbformat
 from docutils import nodes
 from formulas import ROOT, node_program
-from notebooks import HELPER, WithoutHelper, has_notebook, names_of_helper, needed_before, unneeded, without_lines
+from notebooks import (
+    HELPER,
+    WithoutHelper,
+    bound,
+    has_notebook,
+    names_of_helper,
+    needed_before,
+    unneeded,
+    without_lines,
+)
+from scripts import CELLS, WEB, bundle, edition, inline_data
 from sphinx.errors import ExtensionError
 from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
@@ -40,7 +47,6 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-SOURCES = ROOT / "book" / "cells"
 STYLE = ROOT / "book" / "style" / "cells.css"
 FOLDER = "run"
 HIDDEN = {"remove-cell", "remove-input"}
@@ -51,6 +57,8 @@ HONEST = (
 )
 #: Modules that a cell may import in the page, beside Python's own.
 IN_THE_PAGE = {"numpy", "sympy", "mpmath", "dhlib", "matplotlib", "IPython", HELPER}
+#: The tag of cells that need matplotlib, which the reader's browser takes from another host if the reader agrees.
+MATPLOTLIB = "mpl"
 MATHJAX = ("startup.js", "core.js", "input/tex-base.js", "input/tex/extensions/ams.js", "output/svg.js")
 MATHJAX_FONT = "output/svg/fonts/tex.js"
 
@@ -98,17 +106,39 @@ def page_sources(cells: list[tuple[str, bool]]) -> tuple[str, list[str]]:
     return (f"from {HELPER} import {names}" if names else ""), sources
 
 
-def modules_from_elsewhere(source: str) -> str:
-    """Return a module that a cell imports and that cannot run in a page, or ``""``."""
-    for node in ast.walk(ast.parse(source)):
-        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-        if isinstance(node, ast.ImportFrom) and node.module:
-            names = [node.module]
-        for name in names:
-            top = name.split(".")[0]
-            if top not in IN_THE_PAGE and top not in sys.stdlib_module_names:
-                return top
-    return ""
+def imported(tree: ast.Module) -> list[str]:
+    """Return the modules that code imports."""
+    names = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+    return names
+
+
+def draws_with_matplotlib(tree: ast.Module) -> bool:
+    """Say whether code imports matplotlib, or what draws with it."""
+    return any(name.split(".")[0] == "matplotlib" or name == "dhlib.plot" for name in imported(tree))
+
+
+class Missing:
+    """Follows from cell to cell what cannot run in a page: who imports such a module, and who uses what that made."""
+
+    def __init__(self) -> None:
+        self.names: dict[str, str] = {}
+
+    def of(self, tree: ast.Module) -> str:
+        """Return the module that the next cell needs and the page has not, or ``""``."""
+        tops = [name.split(".")[0] for name in imported(tree)]
+        absent = [top for top in tops if top not in IN_THE_PAGE and top not in sys.stdlib_module_names]
+        absent += [self.names[name] for name in sorted(needed_before(tree.body, set()) & set(self.names))]
+        for name in bound(tree):
+            if absent:
+                self.names[name] = absent[0]
+            else:
+                self.names.pop(name, None)
+        return absent[0] if absent else ""
 
 
 def cells_of(app: Sphinx, page: str) -> list[dict[str, Any]]:
@@ -121,12 +151,19 @@ def cells_of(app: Sphinx, page: str) -> list[dict[str, Any]]:
         return []
     prelude, sources = page_sources([(cell.source, not shown) for (_, cell), shown in zip(code, seen, strict=True)])
     cells: list[dict[str, Any]] = [{"k": -1, "source": prelude}] if prelude else []
-    elsewhere = ""
-    for (k, _), shown, source in zip(code, seen, sources, strict=True):
+    missing = Missing()
+    for (k, cell), shown, source in zip(code, seen, sources, strict=True):
         if not shown and not source:
             continue
-        elsewhere = elsewhere or modules_from_elsewhere(source)
-        cells.append({"k": k} | ({} if shown else {"source": source}) | ({"elsewhere": elsewhere} if elsewhere else {}))
+        told: dict[str, Any] = {"k": k} | ({} if shown else {"source": source})
+        tree = ast.parse(source)
+        if elsewhere := missing.of(tree):
+            told["elsewhere"] = elsewhere
+        if MATPLOTLIB in cell.metadata.get("tags", []):
+            told[MATPLOTLIB] = True
+        elif draws_with_matplotlib(tree):
+            logger.warning("a cell draws with matplotlib, so it should carry the tag %r:\n%s", MATPLOTLIB, source)
+        cells.append(told)
     return cells
 
 
@@ -202,29 +239,75 @@ def add_bars(app: Sphinx, doctree: nodes.document, page: str) -> None:
             data["python"]["files"] = {f"/home/pyodide/book/{name}": f"{root}{name}?v={app.config.live_cells_edition}"}
         title = next(iter(doctree.findall(nodes.title)), None)
         if title is not None:
-            title.parent.insert(1, nodes.raw("", '<div class="dh-part dh-all"></div>', format="html"))
-    written = json.dumps(data, ensure_ascii=False).replace("<", "\\u003c")
-    edition, script = app.config.live_cells_edition, "exercise" if exercise else "cells"
-    doctree += nodes.raw(
-        "",
-        f'<script type="application/json" id="dh-cells">{written}</script>\n'
-        f'<script defer src="{html.escape(root)}{script}.js?v={edition}"></script>\n',
-        format="html",
-    )
+            title.parent.insert(1, nodes.raw("", panel(exercise), format="html"))
+    add_script(app, doctree, page, "exercise" if exercise else "cells", inline_data("dh-cells", data))
+
+
+def add_script(app: Sphinx, doctree: nodes.document, page: str, name: str, data: str) -> None:
+    """Put a script to the end of a page, behind the data that it reads."""
+    here = posixpath.dirname(app.builder.get_target_uri(page))
+    address = html.escape(posixpath.relpath(f"{FOLDER}/{name}.js", here or "."))
+    script = f'<script defer src="{address}?v={app.config.live_cells_edition}"></script>\n'
+    doctree += nodes.raw("", data + script, format="html")
     app.env.dh_live_pages.add(page)  # type: ignore[attr-defined]
 
 
-class ProgressDirective(SphinxDirective):
+def of(points: float) -> str:
+    """Say of how many points none is earned yet, as ``points.js`` says it."""
+    return f"0 of {points:g} {'point' if points == 1 else 'points'}"
+
+
+def panel(exercise: dict[str, Any]) -> str:
+    """Return what stands above an exercise, as it is before the script of the page fills it: so nothing shifts."""
+    points = [part["points"] for part in exercise["parts"]]
+    earned = "" if None in points else f"{of(sum(points))} here"
+    written = f'<span role="status">{earned}</span> <button type="button" disabled>Save as notebook</button>'
+    if "progress" in exercise:
+        written += f' <a href="{html.escape(exercise["progress"])}">All exercises</a>'
+    if "honest" in exercise:
+        written += f'<p class="dh-honest">{exercise["honest"]}</p>'
+    return f'<div class="dh-part dh-all">{written}</div>'
+
+
+class progress(nodes.General, nodes.Element):  # type: ignore[misc]
     """The reader's points in all exercises, with what to press to keep them elsewhere."""
 
+
+class ProgressDirective(SphinxDirective):
+    """Puts `progress` into the page; what fills it is written when all exercises are known."""
+
     def run(self) -> list[nodes.Node]:
-        """Return the place; what fills it is written with the page, when all exercises are known."""
-        return [nodes.raw("", '<div class="dh-progress"><p>A script shows your points here.</p></div>', format="html")]
+        """Return the place."""
+        return [progress()]
+
+
+def progress_html(exercises: list[dict[str, Any]]) -> str:
+    """Return the points of all exercises, none earned yet, and what to press once the script is there."""
+    rows = ""
+    for told in exercises:
+        title, every = html.escape(told["title"]), of(points := sum(part["points"] for part in told["parts"]))
+        rows += (
+            f'<tr><th scope="row"><a href="{html.escape(told["address"])}">{title}</a></th>'
+            f"<td>0 of {len(told['parts'])}</td><td>{every}</td>"
+            f'<td><progress max="{points:g}" value="0" aria-label="{title}: {every}"></progress></td></tr>'
+        )
+    heads = "".join(f'<th scope="col">{text}</th>' for text in ("Exercise", "Parts done", "Points"))
+    return (
+        '<div class="dh-progress"><div class="pst-scrollable-table-container"><table class="table">'
+        f"<thead><tr>{heads}<td></td></tr></thead><tbody>{rows}</tbody></table></div>"
+        '<div class="dh-buttons"><button type="button" disabled>Save as a file</button>'
+        '<label for="dh-progress-file">Take from a file:</label>'
+        '<input type="file" accept="application/json,.json" id="dh-progress-file" class="dh-file" disabled>'
+        '<button type="button" disabled>Forget all</button></div><p role="status"></p></div>'
+    )
 
 
 def add_progress(app: Sphinx, doctree: nodes.document, page: str) -> None:
     """Tell the page of progress which exercises there are."""
-    if app.builder.format != "html" or page != PROGRESS:
+    places = list(doctree.findall(progress))
+    if app.builder.format != "html" or not places:
+        for place in places:
+            place.parent.remove(place)
         return
     here = posixpath.dirname(app.builder.get_target_uri(page))
     exercises = []
@@ -234,20 +317,14 @@ def add_progress(app: Sphinx, doctree: nodes.document, page: str) -> None:
             if "honest" in told:
                 address = posixpath.relpath(app.builder.get_target_uri(other), here or ".")
                 exercises.append({key: told[key] for key in ("name", "title", "parts")} | {"address": address})
-    written = json.dumps(exercises, ensure_ascii=False).replace("<", "\\u003c")
-    address = posixpath.relpath(f"{FOLDER}/progress.js", here or ".")
-    doctree += nodes.raw(
-        "",
-        f'<script type="application/json" id="dh-exercises">{written}</script>\n'
-        f'<script defer src="{address}?v={app.config.live_cells_edition}"></script>\n',
-        format="html",
-    )
-    app.env.dh_live_pages.add(page)  # type: ignore[attr-defined]
+    for place in places:
+        place.replace_self(nodes.raw("", progress_html(exercises), format="html"))
+    add_script(app, doctree, page, "progress", inline_data("dh-exercises", exercises))
 
 
 def add_sidebar(app: Sphinx) -> None:
     """Give every page the script that shows points in the sidebar."""
-    app.add_js_file(None, body=(SOURCES / "sidebar.js").read_text("utf-8"))
+    app.add_js_file(None, body=(CELLS / "sidebar.js").read_text("utf-8"))
 
 
 def add_style(app: Sphinx, page: str, _template: str, _context: dict[str, Any], doctree: nodes.document | None) -> None:
@@ -258,10 +335,10 @@ def add_style(app: Sphinx, page: str, _template: str, _context: dict[str, Any], 
 
 def description(app: Sphinx) -> dict[str, Any]:
     """Return what the page needs to start Python."""
-    edition = app.config.live_cells_edition
+    version = app.config.live_cells_edition
     return the_distribution(app).description | {
-        "worker": f"worker.mjs?v={edition}",
-        "book": f"book.zip?v={edition}",
+        "worker": f"worker.mjs?v={version}",
+        "book": f"book.zip?v={version}",
         "elsewhere": browser_python.cdn_address(),
         "files": {},
         "imports": "import numpy, dhlib",
@@ -286,13 +363,9 @@ def begin(app: Sphinx, env: Any, _docnames: list[str]) -> None:
 
 def name_edition(_app: Sphinx, config: Config) -> None:
     """Name the content of all that the pages load: when it changes, every page is written anew."""
-    digest = hashlib.sha256((ROOT / "package-lock.json").read_bytes())
-    for folder in (SOURCES, ROOT / "book" / "bookkit", ROOT / "dhlib", ROOT / "exercises"):
-        for path in sorted(folder.rglob("*")):
-            if path.suffix in {".js", ".mjs", ".py"}:
-                digest.update(path.read_bytes())
-    digest.update(STYLE.read_bytes())
-    config["live_cells_edition"] = digest.hexdigest()[:10]
+    folders = (CELLS, WEB, ROOT / "book" / "bookkit", ROOT / "dhlib", ROOT / "exercises")
+    files = [path for folder in folders for path in folder.rglob("*") if path.suffix in {".js", ".mjs", ".py"}]
+    config["live_cells_edition"] = edition([*files, STYLE])
 
 
 # The site
@@ -311,13 +384,13 @@ def write_site(app: Sphinx, exception: Exception | None) -> None:
     found.write(folder)
     logger.info("── %s", found.numpy_from, color=None if "NOT SERVED" not in found.numpy_from else "red")
     (folder / "book.zip").write_bytes(book_archive())
-    shutil.copyfile(SOURCES / "worker.mjs", folder / "worker.mjs")
+    shutil.copyfile(CELLS / "worker.mjs", folder / "worker.mjs")
     for name in (*MATHJAX, MATHJAX_FONT):
         target = folder / "mathjax" / name
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / "node_modules" / "mathjax" / "es5" / name, target)
     write_exercises(app, folder / "exercises")
-    bundle(folder, "cells", "editor", "exercise", "progress")
+    bundle(folder, [f"cells/{name}" for name in ("cells", "editor", "exercise", "progress")])
 
 
 def write_exercises(app: Sphinx, into: Path) -> None:
@@ -340,8 +413,8 @@ def book_archive() -> bytes:
     files = {f"{HELPER}/{path.name}": path for path in sorted((ROOT / "book" / HELPER).glob("*.py"))}
     files |= {
         "style/colours.css": ROOT / "book" / "style" / "colours.css",
-        "live/kernel.py": SOURCES / "kernel.py",
-        "live/IPython/display.py": SOURCES / "display.py",
+        "live/kernel.py": CELLS / "kernel.py",
+        "live/IPython/display.py": CELLS / "display.py",
         "live/IPython/lib/pretty.py": Path(found.origin),
     }
     written = io.BytesIO()
@@ -354,23 +427,10 @@ def book_archive() -> bytes:
     return written.getvalue()
 
 
-def bundle(into: Path, *names: str) -> None:
-    """Bundle scripts of the pages."""
-    done = subprocess.run(
-        [node_program(), str(ROOT / "book" / "web" / "bundle.mjs"), str(into), *(f"../cells/{name}" for name in names)],
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        encoding="utf-8",
-        check=False,
-    )
-    if done.returncode:
-        raise ExtensionError(f"The scripts of live cells cannot be bundled:\n{done.stdout}")
-
-
 def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
     app.add_config_value("live_cells_edition", "", "html")
+    app.add_node(progress)
     app.add_directive("dh-progress", ProgressDirective)
     app.connect("config-inited", name_edition)
     app.connect("builder-inited", add_sidebar)

@@ -8,29 +8,23 @@ nothing shifts when the figure comes alive.
 
 from __future__ import annotations
 
-import hashlib
 import html
-import json
 import math
 import posixpath
 import re
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
 from docutils import nodes
 from docutils.parsers.rst import directives
-from formulas import ROOT, node_program
-from sphinx.errors import ExtensionError
+from formulas import ROOT
+from scripts import WEB, bundle, edition
 from sphinx.util.docutils import SphinxDirective
 
 from dhlib import Chain, DHError, Revolute, robots
-from dhlib.drawing import draw
-from dhlib.export import chain_json
-from dhlib.normals import common_normal
+from dhlib.export import bodies, chain_json, figure_data, to_json
 from dhlib.sketch import link, sketch, steps
 
 sys.path.append(str(ROOT / "book"))
@@ -40,7 +34,6 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
     from sphinx.writers.html5 import HTML5Translator
 
-SOURCES = ROOT / "book" / "web"
 #: The scripts of a kind of figure: its own first, then what that one loads when it is needed.
 SCRIPTS = {"link": ("link",), "robot": ("robot", "space"), "place": ("place",)}
 FIGURE = re.compile(r"<dh-([a-z]+) ")
@@ -68,7 +61,7 @@ class LiveFigure(SphinxDirective):
         """Return a figure with the element and the caption."""
         figure = nodes.figure("", classes=["live-figure"])
         self.set_source_info(figure)
-        for path in SOURCES.iterdir():  # the page names the edition of its scripts
+        for path in WEB.iterdir():  # the page names the edition of its scripts
             self.env.note_dependency(str(path))
         serial = self.env.new_serialno(f"dh-{self.kind}") + 1
         try:
@@ -183,21 +176,18 @@ class DhRobot(LiveFigure):
     def data(self) -> dict[str, str]:
         """Return the attributes of the element: the arm in both conventions."""
         chain = self.chain()
-        classic = chain.to_classic()
-        data = {
+        data = figure_data(chain)
+        if "elbow" in self.options and not data["elbow"]:
+            raise ValueError(
+                f"{chain.name} has no elbow circle: that takes seven revolute joints, of which 1, 2, 3 meet in the "
+                "shoulder and 5, 6, 7 in the wrist, each at right angles to the next."
+            )
+        data["elbow"] = "elbow" in self.options
+        return {
             "convention": self.options.get("convention", chain.convention),
-            "classic": chain_json(classic),
-            "modified": chain_json(chain.to_modified()),
-            "q": json.dumps(self.pose(chain)),
-        } | bodies(classic)
-        if "elbow" in self.options:
-            if not has_elbow_circle(chain):
-                raise ValueError(
-                    f"{chain.name} has no elbow circle: that takes seven revolute joints, of which 1, 2, 3 meet in the "
-                    "shoulder and 5, 6, 7 in the wrist, each at right angles to the next."
-                )
-            data["elbow"] = ""
-        return data
+            "figure": to_json(data),
+            "q": to_json(self.pose(chain)),
+        }
 
     def still(self) -> tuple[str, str]:
         """Return the arm at its first q."""
@@ -228,7 +218,7 @@ class DhPlace(LiveFigure):
     def data(self) -> dict[str, str]:
         """Return the attributes of the element: the arm, of which the figure shows the axes alone."""
         chain = self.chain()
-        return {"chain": chain_json(chain)} | bodies(chain)
+        return {"chain": chain_json(chain)} | {name: to_json(value) for name, value in bodies(chain).items()}
 
     def still(self) -> tuple[str, str]:
         """Return the arm with its axes, without frames."""
@@ -254,38 +244,6 @@ def read_robot(name: str, arguments: str = "") -> Chain:
     return chain
 
 
-def has_elbow_circle(chain: Chain) -> bool:
-    """Say whether the elbow of an arm can go round while the hand rests, as ``turnElbow`` of the figures does it."""
-    if chain.kinds != "RRRRRRR":
-        return False
-    axes = chain.axes()
-    normals = [common_normal(axes[k], axes[k + 1]) for k in (0, 1, 4, 5)]
-    crossed = all(n.kind == "intersecting" and abs(n.angle - math.pi / 2) < 1e-9 for n in normals)
-    meet = all(np.allclose(normals[k].after, normals[k + 1].before, atol=1e-9 * chain.reach) for k in (0, 2))
-    return crossed and meet
-
-
-def bodies(chain: Chain) -> dict[str, str]:
-    """Return how large an arm is, and where on its axis the body of each joint sits, as dhlib draws it at q = 0.
-
-    The heights count from the point that ``chain.axes()`` names, in the sense of the axis.
-    """
-    figure = draw(chain, [0.0] * chain.n)
-    heights = [
-        float((joint.centre - axis.point) @ axis.direction)
-        for joint, axis in zip(figure.joints, chain.axes(), strict=True)
-    ]
-    return {"heights": json.dumps(heights), "size": json.dumps(figure.size)}
-
-
-def edition() -> str:
-    """Return a short hash of all scripts, so that a browser does not keep old ones."""
-    digest = hashlib.sha256((ROOT / "package-lock.json").read_bytes())
-    for path in sorted(SOURCES.iterdir()):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:10]
-
-
 def visit_html(translator: HTML5Translator, node: live_figure) -> None:
     """Write the element, and its script before the first one of a page."""
     page = translator.builder.current_docname
@@ -294,7 +252,7 @@ def visit_html(translator: HTML5Translator, node: live_figure) -> None:
         written.add((page, node["kind"]))
         here = posixpath.dirname(translator.builder.get_target_uri(page))
         address = posixpath.relpath(f"live/{node['kind']}.js", here or ".")
-        translator.body.append(f'<script src="{address}?v={edition()}"></script>\n')
+        translator.body.append(f'<script src="{address}?v={edition(WEB.iterdir())}"></script>\n')
     attributes = "".join(f' {key}="{html.escape(str(value), quote=True)}"' for key, value in node["data"].items())
     translator.body.append(f"<dh-{node['kind']}{attributes}>{node['still']}</dh-{node['kind']}>\n")
     raise nodes.SkipNode
@@ -306,23 +264,6 @@ def visit_latex(translator: Any, node: live_figure) -> None:
     raise nodes.SkipNode
 
 
-def bundle(into: Path, kinds: set[str]) -> None:
-    """Write the scripts of some kinds of figures."""
-    names = sorted(name for kind in kinds for name in SCRIPTS[kind])
-    if not (ROOT / "node_modules" / "esbuild").is_dir():
-        raise ExtensionError("esbuild is missing: run `make book`, or `npm ci`.")
-    done = subprocess.run(
-        [node_program(), str(SOURCES / "bundle.mjs"), str(into), *names],
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        encoding="utf-8",
-        check=False,
-    )
-    if done.returncode:
-        raise ExtensionError(f"The live figures cannot be bundled:\n{done.stdout}")
-
-
 def bundle_what_is_used(app: Sphinx, exception: Exception | None) -> None:
     """Bundle the scripts of the figures that stand in the site."""
     if exception is not None or app.builder.format != "html":
@@ -332,7 +273,7 @@ def bundle_what_is_used(app: Sphinx, exception: Exception | None) -> None:
     for old in site.glob("live/*"):
         old.unlink()
     if kinds:
-        bundle(site / "live", kinds)
+        bundle(site / "live", {f"web/{name}" for kind in kinds for name in SCRIPTS[kind]})
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -14,16 +14,15 @@ from __future__ import annotations
 import html
 import json
 import re
-import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from docutils import nodes
-from formulas import ROOT, node_program, set_formula
+from formulas import ROOT, set_formula
 from myst_nb.core.variables import RetrievalError
 from myst_nb.ext.glue.utils import retrieve_glue_data
+from scripts import bundle
 from sealing import Keys, seal
-from sphinx.errors import ExtensionError
 from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
@@ -229,22 +228,11 @@ def finish(app: Sphinx, exception: Exception | None) -> None:
     if exception is not None or app.builder.format != "html":
         return
     if any(of_page.get("has_questions") for of_page in app.env.metadata.values()):
-        bundle("questions", Path(app.outdir) / "_static")
+        bundle(Path(app.outdir) / "_static", ["web/questions"])
     for page, kept in app.answers.items():  # type: ignore[attr-defined]
         path = Path(app.outdir).parent / "answers" / f"{page}.json"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(kept), "utf-8")
-
-
-def bundle(name: str, into: Path) -> None:
-    """Write a script of ``book/web`` and all it imports as one classic script, which also runs from the disk."""
-    program = ROOT / "book" / "web" / "bundle.mjs"
-    command = [node_program(), str(program), str(into), name]
-    done = subprocess.run(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding="utf-8", check=False
-    )
-    if done.returncode != 0:
-        raise ExtensionError(f"{name}.js cannot be bundled; did `npm ci` run?\n{done.stdout}")
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 // What every live figure shares: its shadow, words for those who listen, motion for those who like it, an address to share.
 
 import sheet from "./figures.css";
+import { make } from "./make.js";
 import { html, number, spoken } from "./words.js";
 
 const still = matchMedia("(prefers-reduced-motion: reduce)");
@@ -80,18 +81,6 @@ export class LiveFigure extends HTMLElement {
     this.status.textContent = `${button.textContent}: a link to this figure with these values.`;
     setTimeout(() => { button.textContent = label; }, 2000);
   }
-}
-
-/** An element with attributes, handlers and children. */
-export function make(tag, attributes = {}, ...children) {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) {
-    if (typeof value === "function") element.addEventListener(name, value);
-    else if (name === "html") element.innerHTML = value;
-    else if (value !== undefined && value !== false) element.setAttribute(name, value === true ? "" : value);
-  }
-  element.append(...children);
-  return element;
 }
 
 let count = 0;

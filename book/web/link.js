@@ -1,6 +1,7 @@
 // {dh-link}: two frames and the link between them, four parameters to drag, four steps to play.
 
-import { LiveFigure, Matrix, Slider, choice, make } from "./figure.js";
+import { LiveFigure, Matrix, Slider, choice } from "./figure.js";
+import { make } from "./make.js";
 import { IDENTITY, add, along, column, cross, dot, length, linkMatrix, origin, scale, steps, subtract } from "./kinematics.js";
 import { Stage, hold, orbit } from "./stage.js";
 import { DEGREE, degrees, entry, html, point, short } from "./words.js";
@@ -155,6 +156,18 @@ class DhLink extends LiveFigure {
       const { low, high } = this.sliders[name];
       if (Number.isFinite(value)) values[name] = Math.max(low, Math.min(high, value));
     }
+    this.change(values, true);
+    this.#showValues();
+  }
+
+  // What the cells of the page see and change
+
+  get forCells() {
+    return { kind: "link", ...this.state, reach: this.reach };
+  }
+
+  take(values) {
+    this.progress = DONE;
     this.change(values, true);
     this.#showValues();
   }

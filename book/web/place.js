@@ -1,6 +1,7 @@
 // {dh-place}: joint axes in space, and frames for the reader to place. Any choice that obeys DH1 and DH2 is right.
 
-import { LiveFigure, Slider, choice, make } from "./figure.js";
+import { LiveFigure, Slider, choice } from "./figure.js";
+import { make } from "./make.js";
 import {
   add, along, axes, chainOfFrames, column, commonNormal, cross, deviation, disagreement, dot, foot, forward, frame, origin, readParameters, scale, subtract, unit,
 } from "./kinematics.js";

@@ -1,6 +1,7 @@
 // {dh-robot}: a whole arm, its joints to move, its frames in both conventions, its tables and T.
 
-import { LiveFigure, Matrix, Slider, choice, make } from "./figure.js";
+import { LiveFigure, Matrix, Slider, choice } from "./figure.js";
+import { make } from "./make.js";
 import { add, along, column, cross, elbowCircle, forward, frames, length, moveElbow, origin, parameters, scale, subtract } from "./kinematics.js";
 import { Stage, hold, orbit } from "./stage.js";
 import { Table } from "./table.js";
@@ -20,18 +21,9 @@ const loadSpace = () => (space ??= new Promise((done) => {
 class DhRobot extends LiveFigure {
   build() {
     const data = (name) => JSON.parse(this.getAttribute(name));
-    this.arms = { classic: data("classic"), modified: data("modified") };
-    this.arm = this.arms.classic;
-    this.heights = data("heights");
-    this.size = data("size");
-    this.hasElbow = this.hasAttribute("elbow");
-    this.start = { q: data("q"), frames: this.getAttribute("convention") };
-    this.q = [...this.start.q];
+    this.start = { figure: data("figure"), q: data("q"), frames: this.getAttribute("convention") };
     this.shown = this.start.frames;
-    this.link = null;
-    this.trace = null;
     this.reference = null;
-    this.digits = this.size > 20 ? 1 : 3;
 
     this.choice = choice({
       legend: "Frames", value: this.shown, options: FRAMES.map((name) => [name, name === "none" ? "no frames" : name]),
@@ -39,9 +31,9 @@ class DhRobot extends LiveFigure {
     });
     this.tracing = this.#check("path of the tool", (on) => { this.trace = on ? [] : null; });
     this.circling = this.#check("elbow circle", () => {});
-    this.picker = make("select", { change: () => { this.link = this.picker.value === "" ? null : Number(this.picker.value); this.due(); } },
-      make("option", { value: "" }, "no link"), ...[...this.q, 0].map((_, k) => make("option", { value: k }, `link ${k}`)));
+    this.picker = make("select", { change: () => { this.link = this.picker.value === "" ? null : Number(this.picker.value); this.due(); } });
     this.legend = make("span", { class: "legend" }, "c: classic, solid; m: modified, dashed");
+    this.note = make("p", { class: "note", role: "status" });
     const share = make("button", { type: "button", click: () => this.share({ q: this.q.map((value) => short(value, 4).replace("−", "-")).join(" "), frames: this.shown }, share) }, "Copy link");
     const reset = make("button", { type: "button", click: () => this.reset() }, "Reset");
 
@@ -53,28 +45,50 @@ class DhRobot extends LiveFigure {
     orbit(this.ground, this.stage);
     hold(this.ground, this.stage, () => this.#elbowGrip());
 
-    this.sliders = this.q.map((value, k) => this.#slider(k));
-    this.elbow = this.hasElbow ? this.#elbowSlider() : null;
+    this.rows = make("div", { class: "sliders" });
     this.matrix = new Matrix("Pose of the tool, <i>T</i>");
     this.sentence = make("p", { class: "sentence", "aria-hidden": "true" });
-    this.tables = Object.fromEntries(["classic", "modified"].map((name) => [name, new Table(name, this.arms[name].joints.map(({ kind }) => kind))]));
+    this.both = make("div", { class: "tables" });
     this.live.classList.add("robot");
     this.live.append(
       make("div", { class: "bar" }, this.choice.element, make("span", { class: "gap" }), reset, share),
+      this.note,
       this.ground,
-      make("div", { class: "bar more" }, this.tracing.element, ...(this.hasElbow ? [this.circling.element] : []), make("label", { class: "pick" }, "Show ", this.picker), this.legend),
-      make("div", { class: "sliders" }, ...this.sliders.map(({ element }) => element), ...(this.elbow ? [this.elbow.element] : [])),
+      make("div", { class: "bar more" }, this.tracing.element, this.circling.element, make("label", { class: "pick" }, "Show ", this.picker), this.legend),
+      this.rows,
       make("div", { class: "beside" }, this.matrix.element, this.sentence),
-      make("div", { class: "tables" }, this.tables.classic.element, this.tables.modified.element),
+      this.both,
     );
-    this.#arrange();
-    this.#readElbow();
+    this.#equip(this.start.figure, this.start.q);
     new ResizeObserver(([{ contentRect: { width, height } }]) => {
       if (!width) return;
       this.stage.resize(width, height);
       this.draw();
     }).observe(this.ground);
     this.#wakeWhenNear();
+  }
+
+  /** Take an arm, and give it sliders and tables of its own. */
+  #equip(figure, q) {
+    this.figure = figure;
+    this.arms = { classic: figure.classic, modified: figure.modified };
+    this.arm = this.arms.classic;
+    Object.assign(this, { heights: figure.heights, size: figure.size, q: [...q], link: null, moved: null, marked: null, reference: null });
+    this.digits = this.size > 20 ? 1 : 3;
+    this.trace = this.tracing.box.checked ? [] : null;
+    this.stage.camera = null;
+    this.note.hidden = figure === this.start.figure;
+    this.note.textContent = this.note.hidden ? "" : `From a cell: ${this.arm.name || `an arm with ${q.length} joints`}. Reset brings the first arm back.`;
+    this.circling.element.hidden = !figure.elbow;
+    if (!figure.elbow) this.circling.box.checked = false;
+    this.picker.replaceChildren(make("option", { value: "" }, "no link"), ...[...q, 0].map((_, k) => make("option", { value: k }, `link ${k}`)));
+    this.sliders = q.map((_, k) => this.#slider(k));
+    this.elbow = figure.elbow ? this.#elbowSlider() : null;
+    this.rows.replaceChildren(...this.sliders.map(({ element }) => element), ...(this.elbow ? [this.elbow.element] : []));
+    this.tables = Object.fromEntries(["classic", "modified"].map((name) => [name, new Table(name, this.arms[name].joints.map(({ kind }) => kind))]));
+    this.both.replaceChildren(this.tables.classic.element, this.tables.modified.element);
+    this.#arrange();
+    this.#readElbow();
   }
 
   #check(text, changed) {
@@ -179,17 +193,9 @@ class DhRobot extends LiveFigure {
   }
 
   reset() {
-    this.q = [...this.start.q];
     this.shown = this.start.frames;
-    this.picker.value = "";
-    this.link = null;
-    if (this.trace) this.trace = [];
-    this.marked = null;
-    this.moved = null;
+    this.#equip(this.start.figure, this.start.q);
     this.stage.turn();
-    this.stage.camera = null;
-    this.#arrange();
-    this.#showValues();
     this.due();
   }
 
@@ -213,13 +219,23 @@ class DhRobot extends LiveFigure {
     this.#readElbow();
   }
 
-  /** The joint values, for cells of the page. */
+  // What the cells of the page see and change
+
   get joints() {
     return [...this.q];
   }
 
-  set joints(values) {
-    this.read(new URLSearchParams({ q: values.join(" ") }));
+  get forCells() {
+    return { kind: "robot", q: this.joints, chain: this.arms.classic };
+  }
+
+  take({ figure, q }) {
+    if (figure && JSON.stringify(figure) !== JSON.stringify(this.figure)) this.#equip(figure, q);
+    this.q = [...q];
+    this.moved = null;
+    this.marked = null;
+    this.#showValues();
+    this.due();
   }
 
   // What a reader sees

@@ -1,6 +1,6 @@
 // A DH table in the page: a row for each joint, the columns in the order of the convention.
 
-import { make } from "./figure.js";
+import { make } from "./make.js";
 import { DEGREE, html, short } from "./words.js";
 
 const COLUMNS = { classic: ["theta", "d", "a", "alpha"], modified: ["alpha", "a", "theta", "d"] };

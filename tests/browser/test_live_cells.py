@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from building import build_book
 from live import needs_numpy
@@ -19,7 +20,8 @@ from serve import server
 pytestmark = [pytest.mark.book, pytest.mark.browser]
 
 #: The cells of the page, by what they show.
-IMPORTS, ARRAY, MATRIX, TABLE, FIGURE, LONG, SUM = range(1, 8)
+IMPORTS, ARRAY, MATRIX, TABLE, FIGURE, LONG, SUM, SHOW_ARM, READ_ARM, SHOW_LINK, READ_LINK, DRAW = range(1, 13)
+ARM, LINK = "#live-arm", "#live-one-link"
 A_MINUTE = 60_000
 
 
@@ -277,19 +279,83 @@ def test_from_the_disk_the_page_says_how_to_serve_it(browser: Any, cells_site: P
     page.close()
 
 
+def of_figure(page: Any, figure: str) -> dict[str, Any]:
+    """What cells are told of a figure."""
+    found: dict[str, Any] = page.locator(figure).evaluate("figure => figure.forCells")
+    return found
+
+
+def slide(page: Any, figure: str, number: int, key: str) -> None:
+    page.locator(f"{figure} input[type=range]").nth(number).press(key)
+
+
+def test_a_chain_goes_into_the_figure_and_its_joints_come_back(page: Any) -> None:
+    assert page.locator(f"{ARM} input[type=range]").count() == 2
+    run(page, SHOW_ARM)
+    assert page.locator(f"{ARM} input[type=range]").count() == 3
+    assert of_figure(page, ARM)["q"] == [0.1, 0.2, 0.3]
+    assert "From a cell: Planar 3R" in page.locator(f"{ARM} .note").inner_text()
+    assert fresh(page, SHOW_ARM).locator("svg").count() == 1, "and below the cell a drawing"
+    run(page, READ_ARM)
+    assert fresh(page, READ_ARM).inner_text().strip() == "array([0.1, 0.2, 0.3])"
+    slide(page, ARM, 1, "End")
+    run(page, READ_ARM)
+    set_by_hand = of_figure(page, ARM)["q"]
+    assert fresh(page, READ_ARM).inner_text().strip() == repr(np.array(set_by_hand))
+    assert set_by_hand[1] == np.pi
+    page.locator(ARM).get_by_role("button", name="Reset").click()
+    assert page.locator(f"{ARM} input[type=range]").count() == 2
+    assert not page.locator(f"{ARM} .note").is_visible()
+
+
+def test_a_link_goes_into_its_figure_and_comes_back(page: Any) -> None:
+    run(page, SHOW_LINK)
+    shown = of_figure(page, LINK)
+    assert (shown["convention"], shown["d"], shown["a"]) == ("modified", 0.75, 1.5)
+    assert np.allclose(np.radians([shown["theta"], shown["alpha"]]), [0.5, -0.25])
+    page.locator(LINK).get_by_role("radio", name="classic").check()
+    slide(page, LINK, 2, "End")
+    run(page, READ_LINK)
+    assert fresh(page, READ_LINK).inner_text().split()[:3] == ["classic", "0.5", "2.0"]
+
+
+MISTAKES = {
+    "live_figure('leg', robots.planar(2))": "no live figure called 'leg'. What can be given is: 'arm', 'one-link'.",
+    "link_figure.show(robots.planar(2))": "this figure shows one link, and the chain has 2 joints.",
+    "link_figure.show(Chain([Revolute(a=7)], 'classic'))": "a is 7, beyond what this figure can show: 2",
+    "arm_figure.move([1, 2, 3, 4])": "4",
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_with_a_figure_is_told(page: Any, mistake: str) -> None:
+    before = of_figure(page, LINK)
+    put(page, READ_LINK, mistake)
+    run(page, READ_LINK, "bad")
+    said = fresh(page, READ_LINK).locator(".dh-said").inner_text()
+    assert said.startswith("DHError")
+    assert MISTAKES[mistake] in said
+    assert of_figure(page, LINK) == before
+    reset(page, READ_LINK)
+
+
 def test_matplotlib_is_asked_for_first(page: Any) -> None:
     asked: list[str] = []
     page.on("request", lambda request: asked.append(request.url))
-    put(page, SUM, "import matplotlib.pyplot as plt")
-    bar(page, SUM).get_by_role("button", name=f"Run cell {SUM}").click()
-    ask = bar(page, SUM).locator(".dh-ask")
-    ask.wait_for()
     data = "JSON.parse(document.getElementById('dh-cells').textContent)"
     host = page.evaluate(f"new URL({data}.python.elsewhere).host")
-    assert host in ask.inner_text()
+    told = bar(page, DRAW).locator(".dh-status").inner_text()
+    assert told == f"This cell draws with matplotlib. Run asks before it is taken from {host}."
+    for number, text in ((DRAW, None), (SUM, "from dhlib.plot import plot"), (SUM, "import matplotlib.pyplot as plt")):
+        if text:
+            put(page, number, text)
+        bar(page, number).get_by_role("button", name=f"Run cell {number}", exact=True).click()
+        ask = bar(page, number).locator(".dh-ask")
+        ask.wait_for()
+        assert host in ask.inner_text()
+        ask.get_by_role("button", name="Do not run").click()
+        page.wait_for_function(f"() => DhCells.cells[{number - 1}].status.textContent === 'Not run.'")
     assert not [url for url in asked if host in url]
-    ask.get_by_role("button", name="Do not run").click()
-    page.wait_for_function(f"() => DhCells.cells[{SUM - 1}].status.textContent === 'Not run.'")
     reset(page, SUM)
 
 

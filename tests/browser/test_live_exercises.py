@@ -113,6 +113,15 @@ def test_progress_goes_to_another_browser_as_a_file(browser: Any, page: Any, add
     assert other.locator(".dh-progress tbody").inner_text() == points
     other.goto(f"{address}/exercises/{NAME}.html")
     assert other.locator(".dh-edited").count() > 0, "what was written came along"
+    other.goto(f"{address}/book/progress.html")
+    forget = other.locator(".dh-progress button").nth(1)
+    forget.click()
+    assert other.locator(".dh-progress tbody").inner_text() == points, "asked once more first"
+    forget.click()
+    assert other.locator(".dh-progress tbody").inner_text() != points
+    assert forget.inner_text() == "Forget all"
+    other.goto(f"{address}/exercises/{NAME}.html")
+    assert other.locator(".dh-edited").count() == 0
     other.close()
 
 
