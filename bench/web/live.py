@@ -1,6 +1,7 @@
 """Run code in a page of the built book, and say how long it takes: first Run, next Run, round trips to a figure.
 
-A round trip sends joints from a cell to the figure, and reads them in the next cell. Beside the times stands what the
+A round trip sends joints from a cell to the figure, and reads them in the next cell; what the cell draws below itself is
+measured for itself. Beside the times stands what the
 reader's browser has fetched for it, as a host of static pages sends it (compressed), and the load of this machine.
 
     python bench/web/live.py _build/html
@@ -37,13 +38,19 @@ RUN = """async number => {
 TRIP = """async ([name, angle]) => {
     const figure = document.getElementById(`live-${name}`);
     const began = performance.now();
-    await DhCells.session.run(`figure.move([${angle}, 0, 0, 0])`, "there", () => {});
+    await DhCells.session.run(`figure.move([${angle}, 0, 0, 0]);`, "there", () => {});
     const shown = performance.now();
     if (figure.joints[0] !== angle) throw new Error("the figure has not moved");
     let read = "";
     await DhCells.session.run("print(repr(float(figure.q[0])))", "back", ({text}) => { read += text ?? ""; });
     if (Number(read) !== angle) throw new Error(`read ${read} instead of ${angle}`);
     return [shown - began, performance.now() - began];
+}"""
+
+DRAW = """async () => {
+    const began = performance.now();
+    await DhCells.session.run("figure", "drawing", () => {});
+    return performance.now() - began;
 }"""
 
 
@@ -74,6 +81,8 @@ def measure(page: Any, site: Path, address: str) -> None:
     print(
         f"to the figure {there:.1f} ms; there and back {whole:.1f} ms (median of {TRIPS}; the slowest {slowest:.0f} ms)"
     )
+    drawing = [page.evaluate(DRAW) for _ in range(5)]
+    print(f"a drawing below the cell {statistics.median(drawing):.0f} ms")
     print(f"load of the machine {os.getloadavg()[0]:.1f}")
 
 

@@ -145,7 +145,10 @@ class DhRobot extends LiveFigure {
 
   #paint() {
     const style = getComputedStyle(this);
-    this.space.paint(Object.fromEntries(["body", "faint", "accent", "muted"].map((name) => [name, style.getPropertyValue(`--dh-${name}`).trim()])));
+    const colour = (name) => style.getPropertyValue(`--dh-${name}`).trim();
+    // Light and shade tell the bodies apart; all of them have to stand out from the ground.
+    const mixed = (part) => [colour("muted"), colour("ground"), part];
+    this.space.paint({ body: mixed(0.25), faint: mixed(0.12), muted: mixed(0), accent: [colour("accent"), colour("ground"), 0] });
   }
 
   // What a reader does

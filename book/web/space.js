@@ -27,11 +27,11 @@ globalThis.DhSpace = class {
     this.meshes = [];
   }
 
-  /** Take the colours of the page, by name. */
+  /** Take the colours of the page, by name: one, another, and how much of the other there is in it. */
   paint(colours) {
-    for (const [name, value] of Object.entries(colours)) {
+    for (const [name, [value, other, part]] of Object.entries(colours)) {
       this.materials[name] ??= new MeshStandardMaterial({ roughness: 0.65, metalness: 0.05 });
-      this.materials[name].color = new Color(value);
+      this.materials[name].color = new Color(value).lerp(new Color(other), part);
     }
   }
 

@@ -42,11 +42,16 @@
   const SHAPES = "path, line, polyline, polygon, circle, ellipse, rect";
   const within = (element, svg) => !element.closest("defs, symbol, marker, clipPath") && element.closest("svg") === svg;
   const SURFACE = 4.5;
-  /** The colour behind a point of the screen: the surfaces there that are drawn before a piece. */
+  /** Drawn wide, and covered but for thin edges. */
+  const EDGES = ".le, .br, .rim";
+  const isSurface = ({ element, fill, stroke }) => Boolean(fill) || (stroke && parseFloat(getComputedStyle(element).strokeWidth) >= SURFACE);
+  const kind = (element) => element.getAttribute("class") ?? "";
+  /** The colour behind a point of the screen: the surfaces there that are drawn before a piece; those of its own kind join it. */
   const behind = (pieces, count, point, base) => {
     let colour = base;
+    const mine = isSurface(pieces[count]) ? kind(pieces[count].element) : null;
     for (const { element, fill, stroke } of pieces.slice(0, count)) {
-      if (!element.isPointInFill) continue;
+      if (!element.isPointInFill || kind(element) === mine || element.matches(EDGES)) continue;
       const at = point.matrixTransform(element.getScreenCTM().inverse());
       if (fill && element.isPointInFill(at)) colour = over(fill, colour);
       if (stroke && parseFloat(getComputedStyle(element).strokeWidth) >= SURFACE && element.isPointInStroke(at)) colour = over(stroke, colour);
@@ -56,7 +61,7 @@
   const middle = (element) => {
     if (element.getTotalLength && !(element instanceof SVGRectElement)) {
       const length = element.getTotalLength();
-      const at = [0.25, 0.5, 0.75].map((part) => element.getPointAtLength(part * length).matrixTransform(element.getScreenCTM()));
+      const at = [1, 2, 3, 4, 5, 6, 7].map((k) => k / 8).map((part) => element.getPointAtLength(part * length).matrixTransform(element.getScreenCTM()));
       return at;
     }
     const { x, y, width, height } = element.getBoundingClientRect();
@@ -79,7 +84,7 @@
         return Math.max(...[fill, stroke].filter(Boolean).map((colour) => ratio(over(colour, below), below)));
       }).sort((a, b) => a - b);
       // A line may cross another of its own brightness; half of it has to stand out.
-      const value = letters ? worst[0] : worst[1];
+      const value = letters ? worst[0] : worst[Math.floor(worst.length / 2)];
       found.push({ letters, value, what: letters ? element.textContent : `${element.tagName}.${element.getAttribute("class") ?? ""}` });
     }
     return found;

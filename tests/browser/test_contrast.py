@@ -23,9 +23,13 @@ ROOT = Path(__file__).parents[2]
 LETTERS, LINES = 4.5, 3.0
 #: What needs not stand out, by words of its class, and why.
 EXEMPT = {
+    "b": "the inside of a link, whose edge is drawn",
+    "flesh": "the inside of a link, whose edge is drawn",
+    "lg": "the ground within the edges of a length",
     "l": "the tint within the edges of a length",
     "wedge": "the tint of an angle, whose arc is drawn",
     "casing": "the ground around a line that crosses others",
+    "cap": "the end of a body; it is of the colour of its side, and its rim is drawn",
     "grip": "where a handle can be taken, which is drawn",
     "faint": "where a frame will be, while its ghost is on the way",
     "dull": "the axes of frames that are not being placed",
