@@ -1,8 +1,8 @@
 """Run code in a page of the built book, and say how long it takes: first Run, next Run, round trips to a figure.
 
-A round trip sends joints from a cell to the figure, and reads them in the next cell; what the cell draws below itself is
-measured for itself. Beside the times stands what the
-reader's browser has fetched for it, as a host of static pages sends it (compressed), and the load of this machine.
+A round trip sends joints from a cell to the figure, and reads them in the next cell; what a cell draws below itself is
+measured alone. Beside the times stands what the reader's browser has fetched for it, as a host of static pages sends it
+(compressed), and the load of this machine.
 
     python bench/web/live.py _build/html
 """
