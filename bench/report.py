@@ -93,7 +93,7 @@ def rate(seconds_each: float) -> str:
 def times(ratio: float) -> str:
     """How many times as long the peer takes.
 
-    >>> times(3.57), times(0.0785), times(1092.2)
+    >>> times(3.57), times(0.0784), times(1092.2)
     ('3.6 ×', '0.078 ×', '1100 ×')
     """
     return f"{float(f'{ratio:.2g}'):g} ×"

@@ -48,9 +48,9 @@ def contents() -> str:
     return yaml.safe_dump({"format": "jb-book", "root": root, "chapters": [{"file": name} for name in others]})
 
 
-def ours() -> Path:
+def ours(name: str = "ours") -> Path:
     """Lay out our book of the chapters alone."""
-    folder = fresh("ours")
+    folder = fresh(name)
     ignore = shutil.ignore_patterns("__pycache__", "node_modules")
     for name in ("dhlib", "book", "exercises", "solutions", "requirements", "bench"):
         shutil.copytree(ROOT / name, folder / name, ignore=ignore)
@@ -95,11 +95,13 @@ def build(folder: Path) -> str:
     """
     words = [sys.executable, "-c", "from jupyter_book.cli.main import main; main()", "build", str(folder)]
     # Chapters import what the book brings along; nothing else of ours is on the path of the plain one.
-    path = os.pathsep.join([str(ROOT / "book"), str(ROOT)])
+    surroundings = os.environ | {"NO_COLOR": "1", "PYTHONPATH": os.pathsep.join([str(ROOT / "book"), str(ROOT)])}
+    if (wheels := ROOT.parent / "shared" / "wasm").is_dir():  # where the book itself finds numpy for the browser
+        surroundings.setdefault("DHBOOK_WHEELS", str(wheels))
     said = subprocess.run(
         words,
         cwd=folder,
-        env=os.environ | {"NO_COLOR": "1", "PYTHONPATH": path},
+        env=surroundings,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         encoding="utf-8",

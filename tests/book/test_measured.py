@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import doctest
 import html
 import json
 import re
@@ -15,6 +16,7 @@ import pytest
 sys.path.append(str(Path(__file__).parents[2] / "bench"))
 
 import charts
+import covered
 import report
 import run
 
@@ -28,6 +30,11 @@ def plain(text: str) -> str:
     """Words alone: no markup of Markdown or HTML, and no white space, which browsers fold."""
     text = html.unescape(re.sub(r"<[^>]*>", "", text))
     return re.sub(r"[\s`*‘’'\"…]|\.\.\.", "", text)
+
+
+@pytest.mark.parametrize("module", [charts, covered, report], ids=lambda module: module.__name__)
+def test_examples(module: Any) -> None:
+    assert doctest.testmod(module).failed == 0
 
 
 def test_there_is_something_to_show() -> None:
