@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import functools
 import gzip
+import hashlib
 import http.server
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -143,21 +145,28 @@ def lite_packages(ours: dict[str, Any], into: Path) -> dict[str, Any]:
     NotToBeHad
         If a package is not on the index in that version.
     """
-    import hashlib
-
-    theirs = json.loads((books.ROOT / "node_modules" / "pyodide" / "pyodide-lock.json").read_text("utf-8"))["packages"]
+    lock = json.loads((books.ROOT / "node_modules" / "pyodide" / "pyodide-lock.json").read_text("utf-8"))
+    theirs = {canonical(name): entry for name, entry in lock["packages"].items()}
     packages = {name: entry for name, entry in ours["packages"].items() if "/" not in entry["file_name"]}
-    waiting = [name for name in KERNEL if name in theirs]
+    waiting = [name for name in map(canonical, KERNEL) if name in theirs]
     while waiting:
-        name = waiting.pop()
+        name = canonical(waiting.pop())
         if name in packages:
             continue
         entry = dict(theirs[name])
         waiting += entry["depends"]
         before = set(into.iterdir())
-        words = ["download", "--quiet", "--no-deps", "--only-binary", ":all:", "--dest", str(into)]
+        words = ["download", "--quiet", "--no-deps", "--only-binary", ":all:", "--python-version", "3.14"]
         said = subprocess.run(
-            [python_of("jupyterlite"), "-m", "pip", *words] + [f"{entry['name']}=={entry['version']}"],
+            [
+                python_of("jupyterlite"),
+                "-m",
+                "pip",
+                *words,
+                "--dest",
+                str(into),
+                f"{entry['name']}=={entry['version']}",
+            ],
             capture_output=True,
             text=True,
             check=False,
@@ -169,6 +178,11 @@ def lite_packages(ours: dict[str, Any], into: Path) -> dict[str, Any]:
         entry |= {"file_name": file.name, "sha256": hashlib.sha256(file.read_bytes()).hexdigest()}
         packages[name] = entry
     return {"info": ours["info"], "packages": packages}
+
+
+def canonical(name: str) -> str:
+    """The name of a distribution as indexes compare it."""
+    return re.sub(r"[-_.]+", "-", name).lower()
 
 
 def run_ours(page: Page, again: bool) -> None:

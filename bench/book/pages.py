@@ -35,6 +35,7 @@ from environment import BENCH, NotToBeHad, size
 WEB = BENCH / "web"
 RUNS = size(5, 1)
 PAGES = {"front page": "book/index.html", "a chapter": "book/classic.html", "a robot": "book/pa10.html"}
+PAGES = {name: page for name, page in PAGES.items() if page.removesuffix(".html") in books.chapters()}
 #: Path on the host to the file that stands for it; npm's hosts name package, version and file.
 COPIES = {
     "/npm/mathjax@3/": "mathjax/",

@@ -3,7 +3,8 @@
     ```{dh-measured} forward
     ```
 
-The numbers come from ``bench/results`` while the page is built. What was never measured leaves nothing.
+The numbers come from ``bench/results`` while the page is built. What was never measured leaves nothing, not even the
+heading above it.
 """
 
 from __future__ import annotations
@@ -26,6 +27,10 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
 
+class NotMeasured(nodes.Invisible, nodes.Element):  # type: ignore[misc]
+    """Stands where there is nothing to show, until the page has been read."""
+
+
 class MeasuredDirective(SphinxDirective):
     """Show the tables and the pictures of one workload."""
 
@@ -41,7 +46,11 @@ class MeasuredDirective(SphinxDirective):
             tables, where = report.tables(bench / "results", name)
         except KeyError:
             raise self.error(f"There is no workload {name!r}.") from None
-        return [self._section(f"measured-{name}-{k}", table, where) for k, table in enumerate(tables)]
+        return (
+            [NotMeasured()]
+            if not tables
+            else [self._section(f"measured-{name}-{k}", table, where) for k, table in enumerate(tables)]
+        )
 
     def _section(self, identity: str, table: report.Table, where: str) -> nodes.section:
         section = nodes.section(ids=[identity], names=[identity])
@@ -60,7 +69,17 @@ class MeasuredDirective(SphinxDirective):
         self.state.nested_parse(StringList(list(lines), self.get_source_info()[0]), self.content_offset, into)
 
 
+def leave_out(_app: Sphinx, doctree: nodes.document) -> None:
+    """Take out what was not measured, and sections that are left with a title alone."""
+    for nothing in list(doctree.findall(NotMeasured)):
+        section = nothing.parent
+        section.remove(nothing)
+        if all(isinstance(child, nodes.title) for child in section.children):
+            section.parent.remove(section)
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
     app.add_directive("dh-measured", MeasuredDirective)
+    app.connect("doctree-read", leave_out)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -11,7 +11,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import measured
 import pytest
+from docutils import nodes
+from docutils.utils import new_document
 
 sys.path.append(str(Path(__file__).parents[2] / "bench"))
 
@@ -90,6 +93,15 @@ def test_the_page_shows_nothing_else(site: Path) -> None:
     page = (site / "book/how_fast.html").read_text("utf-8")
     shown = set(re.findall(r'id="measured-(\w+)-\d+"', page))
     assert shown == set(STORED)
+
+
+def test_a_heading_without_results_goes_too() -> None:
+    document = new_document("page")
+    for name, content in (("measured", nodes.paragraph("", "so much")), ("not measured", measured.NotMeasured())):
+        document += nodes.section("", nodes.title("", name), content, measured.NotMeasured())
+    measured.leave_out(None, document)
+    assert [section[0].astext() for section in document.findall(nodes.section)] == ["measured"]
+    assert not list(document.findall(measured.NotMeasured))
 
 
 def test_a_missing_peer_is_named_with_the_reason() -> None:
