@@ -55,9 +55,12 @@ kernelspec: {{name: python3, display_name: Python 3}}
 #: What JupyterLite's kernel loads before it runs anything, and what that needs.
 KERNEL = [
     "micropip", "packaging", "ipython", "jedi", "parso", "traitlets", "decorator", "pygments", "prompt_toolkit",
-    "wcwidth", "matplotlib-inline", "stack-data", "executing", "asttokens", "pure-eval", "six", "comm", "pyodide-http",
+    "wcwidth", "matplotlib-inline", "stack-data", "executing", "asttokens", "pure-eval", "six", "pyodide-http",
     "typing-extensions", "ipython-pygments-lexers",
 ]  # fmt: skip
+
+#: The same, of what is not in Pyodide's distribution.
+BESIDES = {"comm": "0.2.3"}
 
 
 class Compressing(Quiet):
@@ -148,7 +151,10 @@ def lite_packages(ours: dict[str, Any], into: Path) -> dict[str, Any]:
     lock = json.loads((books.ROOT / "node_modules" / "pyodide" / "pyodide-lock.json").read_text("utf-8"))
     theirs = {canonical(name): entry for name, entry in lock["packages"].items()}
     packages = {name: entry for name, entry in ours["packages"].items() if "/" not in entry["file_name"]}
-    waiting = [name for name in map(canonical, KERNEL) if name in theirs]
+    for name, version in BESIDES.items():
+        entry = {"name": name, "version": version, "depends": [], "imports": [name], "install_dir": "site"}
+        theirs[name] = entry | {"package_type": "package", "unvendored_tests": False}
+    waiting = [name for name in map(canonical, [*KERNEL, *BESIDES]) if name in theirs]
     while waiting:
         name = canonical(waiting.pop())
         if name in packages:
