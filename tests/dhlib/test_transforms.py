@@ -6,11 +6,13 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from dhlib import DHError, Rx, Ry, Rz, Tx, Ty, Tz, inverse
+from dhlib.scalars import has_symbols
 from dhlib.transforms import pose_fault, read_pose
 
 ROTATIONS = {"x": Rx, "y": Ry, "z": Rz}
 TRANSLATIONS = {"x": Tx, "y": Ty, "z": Tz}
 ANGLES = st.floats(-12, 12)
+SYMBOL = sympy.Symbol("theta")
 
 
 @pytest.mark.parametrize("k", range(-4, 5))
@@ -83,3 +85,17 @@ def test_no_number_is_refused(transform, wrong):
 def test_what_is_no_pose_is_said(spoilt, words):
     with pytest.raises(DHError, match=words):
         read_pose(spoilt, "base")
+
+
+@pytest.mark.parametrize(
+    "values",
+    [SYMBOL, [1.0, SYMBOL], (0, [SYMBOL]), np.array([1.0, SYMBOL]), np.array([[0, SYMBOL]]), sympy.Matrix([SYMBOL])],
+    ids=lambda values: type(values).__name__,
+)
+def test_symbols_are_seen_in_any_container(values):
+    assert has_symbols(values)
+
+
+@pytest.mark.parametrize("values", [1.0, "theta", [1, 2], np.array([1.0]), np.array([1, 2], dtype=object), None])
+def test_numbers_are_no_symbols(values):
+    assert not has_symbols(values)
