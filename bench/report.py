@@ -501,9 +501,10 @@ def live(result: Result) -> list[Table]:
     return [
         Table(
             "Code that runs in the page",
-            "From pressing Run to the output, in a browser with an empty cache, served from this machine: for the "
-            "first cell, which waits for Python, and for the same cell again; and what was fetched for it.",
-            ["page", "how", "first Run", "next Run", "fetched"],
+            "The same cell, with the same interpreter and libraries, served from this machine to a browser with an empty "
+            "cache: from opening the page to the output of the cell, then from pressing Run again to the next output; and "
+            "what was sent, compressed, until the first.",
+            ["page", "how", "first Run", "next Run", "sent"],
             rows,
             _missing(result),
             aims,

@@ -63,8 +63,16 @@ KERNEL = [
 BESIDES = {"comm": "0.2.3"}
 
 
+class Counting(http.server.ThreadingHTTPServer):
+    """Counts what it sends: a browser does not tell what its workers fetch."""
+
+    sent = 0
+
+
 class Compressing(Quiet):
     """Serves as a host of static pages does: compressed."""
+
+    server: Counting
 
     def do_GET(self) -> None:
         """Send a file."""
@@ -83,14 +91,15 @@ class Compressing(Quiet):
             self.send_header(name, value)
         self.end_headers()
         self.wfile.write(content)
+        self.server.sent += len(content)
 
 
 @contextmanager
-def served(folder: Path) -> Iterator[str]:
-    """Serve a folder; yields its address."""
-    httpd = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Compressing, directory=str(folder)))
+def served(folder: Path) -> Iterator[Counting]:
+    """Serve a folder."""
+    httpd = Counting(("127.0.0.1", 0), functools.partial(Compressing, directory=str(folder)))
     threading.Thread(target=httpd.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{httpd.server_address[1]}"
+    yield httpd
     httpd.shutdown()
 
 
@@ -214,25 +223,20 @@ def wait_for(page: Page, selector: str, word: str) -> None:
     )
 
 
-def opened(browser: Any, address: str, run: Callable[[Page, bool], None]) -> dict[str, float]:
+def opened(browser: Any, server: Counting, path: str, run: Callable[[Page, bool], None]) -> dict[str, float]:
     """Open a page with an empty cache, run the cell, and run it again."""
     context = browser.new_context(viewport={"width": 1280, "height": 900})
     page = context.new_page()
     page.set_default_timeout(PATIENCE)
-    session = context.new_cdp_session(page)
-    session.send("Network.enable")
-    received: list[float] = []
-    # Workers fetch too; the server counts nothing, so the page's own part is told.
-    session.on("Network.loadingFinished", lambda event: received.append(event["encodedDataLength"]))
     begin = time.perf_counter()
-    page.goto(address)
+    page.goto(f"http://127.0.0.1:{server.server_address[1]}{path}")
     run(page, False)
-    first = time.perf_counter() - begin
+    first, sent = time.perf_counter() - begin, server.sent
     begin = time.perf_counter()
     run(page, True)
     following = time.perf_counter() - begin
     context.close()
-    return {"first": first, "next": following, "bytes": sum(received)}
+    return {"first": first, "next": following, "bytes": sent}
 
 
 def main() -> None:
@@ -259,9 +263,9 @@ def main() -> None:
                 if who in missing:
                     continue
                 print(f"  live: {who}", file=sys.stderr, flush=True)
-                with served(folder) as address:
+                with served(folder) as server:
                     try:
-                        runs[who].append(opened(browser, address + path, run))
+                        runs[who].append(opened(browser, server, path, run))
                     except Exception as why:  # whatever a peer's page does must not lose ours
                         if who == "dhlib":
                             raise
