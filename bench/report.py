@@ -501,9 +501,9 @@ def live(result: Result) -> list[Table]:
     return [
         Table(
             "Code that runs in the page",
-            "The same cell, with the same interpreter and libraries, served from this machine to a browser with an empty "
-            "cache: from opening the page to the output of the cell, then from pressing Run again to the next output; and "
-            "what was sent, compressed, until the first.",
+            "The same cell, with the same interpreter and libraries, served from this machine to a browser with an "
+            "empty cache: from opening the page to the output of the cell, then from pressing Run again to the next "
+            "output; and what was sent, compressed, until the first.",
             ["page", "how", "first Run", "next Run", "sent"],
             rows,
             _missing(result),
