@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
+from sampling import FULL
 
 from dhlib.errors import DHError
 from dhlib.grading.asked import Catalogue
@@ -23,7 +24,7 @@ from dhlib.grading.grade import mark, prepare
 from dhlib.grading.wall import Outcome
 
 RUN = Path(__file__).with_name("quick_run.py")
-KILLS = 50 if os.environ.get("DHBOOK_FULL") else 6
+KILLS = 50 if FULL else 6
 EXERCISE = """
 from dhlib import robots
 from dhlib.grading.exercise import Exercise, Part

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
+from sampling import FULL
 
 from dhlib.errors import DHError
 from dhlib.grading.batch.cluster import Certificates, Cluster, check_address, job_of
@@ -18,7 +19,6 @@ from dhlib.grading.batch.store import Store
 from dhlib.grading.batch.work import Grader, Settings, Work
 from dhlib.grading.wall import Limits
 
-FULL = bool(os.environ.get("DHBOOK_FULL"))
 EXERCISE = """
 from dhlib import robots
 from dhlib.grading.exercise import Exercise, Part
