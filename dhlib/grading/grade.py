@@ -172,7 +172,10 @@ def prepare(data: bytes, file: str, catalogue: Catalogue, name: str = "") -> Rea
     if not name:
         raise CannotGrade(f"{file} does not say which exercise it is; name it with --exercise NAME.", claims)
     asked = catalogue.asked(name, tag.student)
-    return Ready(asked, claims, close_parts(merge(asked.pristine, cells), asked.exercise), damage(notebook))
+    wrong = damage(notebook)
+    if tag.exercise not in ("", name):
+        wrong = f"{file} says that it is of the exercise {tag.exercise}; it was graded as {name}. {wrong}".rstrip()
+    return Ready(asked, claims, close_parts(merge(asked.pristine, cells), asked.exercise), wrong)
 
 
 def _exercise(tag: Tag, file: str, catalogue: Catalogue, name: str) -> str:

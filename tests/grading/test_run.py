@@ -178,8 +178,10 @@ def test_what_did_not_say_which_exercise_it_is_is_graded_once_somebody_says(hand
         ("ada", "graded"), ("bob", "unreadable"), ("eve", "unreadable")
     ]  # fmt: skip
     assert "--exercise NAME" in submissions[1].message
+    hand_in("zoe/tiny.ipynb", "b", exercise="huge")
     graded, submissions, _ = run(exercise="tiny")
-    assert graded == ["bob", "eve"]
+    assert graded == ["bob", "eve", "zoe"]
+    assert submissions.pop().message == "tiny.ipynb says that it is of the exercise huge; it was graded as tiny."
     assert [(s.student, s.points) for s in submissions] == [("ada", 2), ("bob", 2), ("eve", 0)]
     assert run(exercise="tiny")[0] == []
 

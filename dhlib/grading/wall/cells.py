@@ -31,6 +31,8 @@ from dhlib.grading.wall.shell import read_part, run_cell
 
 #: How long a cell may take beyond its time to stop by itself, and a state to say that a cell has ended.
 GRACE = 0.5
+#: How long the state before a cell may take to hear that the cell was killed: a machine full of its processes is slow.
+KILL_SECONDS = 3.0
 LONGEST_COMMAND = 1 << 20
 LONGEST_REPORT = 200
 MOST_REPORTS = 10_000
@@ -137,7 +139,7 @@ class Keeper:
     def _kill(self, runner: int, k: int, state: int) -> bool:
         """End a cell; whether the state before it can go on."""
         self._sweep(runner)
-        deadline = time.monotonic() + GRACE
+        deadline = time.monotonic() + KILL_SECONDS
         while True:
             pid, said = self._hear(deadline)
             if pid == 0:
