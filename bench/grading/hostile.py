@@ -27,7 +27,7 @@ import work
 from environment import NotToBeHad, size
 
 #: Longer than this nobody waits for three notebooks.
-PATIENCE = size(300, 60)
+PATIENCE = 300
 PROBE_PORT = 49_731
 TRACE = Path(tempfile.gettempdir()) / "bench-hostile-trace"
 
