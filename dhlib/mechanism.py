@@ -401,7 +401,7 @@ def _why(pair: _Pair, search: Search) -> tuple[int | None, str]:
     if between:
         return i + 1, between
     missed = f"is {angle_text(angle)} off its direction" if angle else f"misses its place by {number_text(length)}"
-    laid = ("", " once axis 1 is laid")[i] if i < 2 else f" once axes 1 to {i} are laid"
+    laid = ("", " once axis 1 is in place")[i] if i < 2 else f" once axes 1 to {i} are in place"
     return i + 1, f"axis {i + 1} {missed}{laid}"
 
 

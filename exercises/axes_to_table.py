@@ -326,13 +326,20 @@ def lines_tried():
 LINES = lines_tried()
 
 
+def standing(P, u, Q, v):
+    """How two lines stand to each other."""
+    turn = np.cross(unit(u), unit(v))
+    if np.linalg.norm(turn) < 1e-9:
+        return "antiparallel" if np.dot(u, v) < 0 else "parallel"
+    return "intersecting" if np.isclose(np.subtract(Q, P) @ turn, 0) else "skew"
+
+
 def kind_of_pair(k, P, u, Q, v):
     """What two lines are to each other, and what shows it."""
     turn = np.cross(u, v)
     flat, along = bool(np.isclose(np.subtract(Q, P) @ turn, 0)), not turn.any()
     facts = {"a": along, "b": np.dot(u, v) < 0, "c": flat, "d": not flat}
-    parallel = "antiparallel" if facts["b"] else "parallel"
-    right = parallel if along else "intersecting" if flat else "skew"
+    right = standing(P, u, Q, v)
     reasons = {
         "a": "u × v is another vector than zero: work it out.",
         "b": f"u · v is {np.dot(u, v):g}.",
@@ -474,6 +481,13 @@ def exercise(given):
                         constant(link_between(*skew) * [1, 180 / np.pi]),
                         "degrees",
                     ),
+                    *(
+                        Trap(
+                            "This α is between the lines; u and v have senses, and one of them is reversed here.",
+                            constant([link_between(*skew)[0], sign * (np.pi - abs(link_between(*skew)[1]))]),
+                        )
+                        for sign in (1, -1)
+                    ),
                     Trap("First a, and then alpha.", constant(link_between(*skew)[::-1])),
                     Trap(
                         "This a is the distance of the two points; the lines come closer to each other.",
@@ -495,6 +509,7 @@ def exercise(given):
                     shape=(2,),
                     calls=LINES,
                     signature="link_of(P, u, Q, v)",
+                    kinds=[f"{standing(*line)} lines" for line in LINES],
                     means=length_and_turn,
                 ),
                 section="sec-placing-trap-cross",

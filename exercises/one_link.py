@@ -6,7 +6,7 @@ from itertools import permutations
 
 import numpy as np
 
-from dhlib import Chain, Revolute, Rx, Ry, Rz, Tx, Ty, Tz, classic, modified
+from dhlib import Chain, Revolute, Rx, Ry, Rz, Tx, Ty, Tz, classic
 from dhlib.grading.asking import choice, constant, number
 from dhlib.grading.course.sources import matrix as matrix_text
 from dhlib.grading.exercise import Exercise, Part, Trap
@@ -34,6 +34,8 @@ class Given:
     twist: float = -0.8
     aside: float = 35
     lean: float = 0.3
+    #: Which step of the printed product is wrong, counted from 0.
+    wrong: int = 3
     #: What the first three pairs of frames obey.
     order: tuple[str, ...] = ("both hold", "DH2 fails", "DH1 fails")
 
@@ -71,6 +73,7 @@ def draw(lots):
         twist=lots.one("twist", [-0.95, -0.7, -0.6, 0.55, 0.65, 0.9]),
         aside=lots.one("aside", [22, 24, 26, 28, 31, 33]),
         lean=lots.one("lean", [0.16, 0.18, 0.22, 0.24, 0.26, 0.28]),
+        wrong=lots.one("wrong", [0, 1, 2, 3]),
         order=lots.one("order", orders),
     )
 
@@ -80,8 +83,32 @@ def cells(given):
     A = link("classic", CLASSIC)(*given.LINK.values()).A(1, [given.LINK["theta"]])
     return {
         "link": matrix_text("A", A, 4),
+        "printed": "printed = [" + ", ".join(f'"{step}({symbol})"' for step, symbol in printed(given.wrong)) + "]",
         "frames": "\n".join(matrix_text(f"F{k}", frame, 4) for k, frame in enumerate(given.frames, 1)),
     }
+
+
+#: The four factors of a modified link matrix by their places, and what to say of each as it is printed.
+PLACES = ("first", "second", "third", "fourth")
+STANDS = (
+    "Rx(α) is right: the modified link begins with the twist about x of the frame before.",
+    "Tx(a) is right: the link length goes along the same x as the twist.",
+    "Rz(θ) is right: the joint turns about the new z.",
+    "Tz(d) is right: the offset goes along the axis of the joint.",
+)
+AMISS = (
+    "the twist α is about x, the axis of the link: the factor is Rx(α).",
+    "the length a goes along x, the axis of the link: the factor is Tx(a).",
+    "the joint turns by θ about z, its axis: the factor is Rz(θ).",
+    "the offset d goes along z, the axis of the joint: the factor is Tz(d).",
+)
+
+
+def printed(wrong):
+    """The steps of a modified link with their symbols, one of them about or along the other axis."""
+    steps = ["Rx", "Tx", "Rz", "Tz"]
+    steps[wrong] = steps[wrong][0] + {"x": "z", "z": "x"}[steps[wrong][1]]
+    return list(zip(steps, ("alpha", "a", "theta", "d"), strict=True))
 
 
 def link(convention, names):
@@ -209,13 +236,8 @@ def exercise(given):
                 "A wrong factor",
                 1,
                 Choice(
-                    {
-                        "first": "Rx(α) is right: the modified link begins with the twist about x of the frame before.",
-                        "second": "Tx(a) is right: the link length goes along the same x as the twist.",
-                        "third": "Rz(θ) is right: the joint turns about the new z.",
-                        "fourth": "the offset d goes along z, the axis of the joint: the factor is Tz(d).",
-                    },
-                    right="fourth",
+                    {place: STANDS[k] if k != given.wrong else AMISS[k] for k, place in enumerate(PLACES)},
+                    right=PLACES[given.wrong],
                 ),
                 section="sec-modified-slip",
             ),
@@ -231,8 +253,11 @@ def exercise(given):
                 columns=3,
                 traps=[
                     Trap(
-                        "This is the position of the printed product, with d along x.",
-                        lambda arm, q: modified(q[0], q[1], q[2], 0)[:3, :3] @ [q[3], 0, 0] + [q[1], 0, 0],
+                        "This is the position of the printed product, with its wrong factor.",
+                        lambda arm, q: reduce(
+                            np.matmul,
+                            (STEPS[step](value) for (step, _), value in zip(printed(given.wrong), q, strict=True)),
+                        )[:3, 3],
                     ),
                     Trap(
                         "This is the position of the classic convention, a cos θ, a sin θ, d.",

@@ -99,6 +99,15 @@ def last(chain, q):
     return chain.T(0, chain.n, q)
 
 
+#: A link that is turned by its own angle and by all before it.
+SUMMED = [
+    Trap(
+        "Each link is seen from the one before: its matrix holds its own angle alone, and the product makes the sums.",
+        lambda chain, q: last(chain, np.cumsum(q)),
+    )
+]
+
+
 def one_of(part, title, section, right, **options):
     """One of several; keys with _ stand for words."""
     options = {key.replace("_", " "): says for key, says in options.items()}
@@ -134,6 +143,7 @@ def exercise(given):
                 Numbers(last, at=angles[:2]),
                 section="sec-classic-product",
                 arm=two,
+                traps=SUMMED,
                 kinematics=False,
             ),
             Part(
@@ -143,6 +153,7 @@ def exercise(given):
                 Formula(last, symbols=SYMBOLS[:2]),
                 section="sec-quickshot-parallel",
                 arm=two,
+                traps=SUMMED,
                 kinematics=False,
             ),
             Part(
@@ -185,13 +196,22 @@ def exercise(given):
                 ],
             ),
             Part("table3", "3R: the classic table", 2, Table("classic"), section="sec-classic-parameters"),
-            Part("T3", "3R in numbers", 1, Numbers(last, at=angles), section="sec-classic-product", kinematics=False),
+            Part(
+                "T3",
+                "3R in numbers",
+                1,
+                Numbers(last, at=angles),
+                section="sec-classic-product",
+                traps=SUMMED,
+                kinematics=False,
+            ),
             Part(
                 "T3_sym",
                 "3R in symbols",
                 2,
                 Formula(last, symbols=SYMBOLS),
                 section="sec-quickshot-parallel",
+                traps=SUMMED,
                 kinematics=False,
             ),
             Part(

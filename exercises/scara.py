@@ -26,6 +26,9 @@ class Given:
     values: tuple[float, ...] = (30, -70, 0.15, 40)
     corner: tuple[float, ...] = (0.8, 0.3, 0.5)
     gripper: tuple[float, ...] = (0.04, 0.12, 30)
+    #: What is missing in d_1, and the signs of it in d_2, d_3 and d_4, of which one is right.
+    missing: float = 0.087
+    tried: tuple[int, int, int] = (1, 1, 1)
     #: The pose of the last part comes from these joints; the page does not say so.
     hidden: tuple[float, ...] = (-25, 65, 0.08, 50)
 
@@ -74,6 +77,8 @@ def draw(lots):
             lots.one("below", [0.09, 0.1, 0.11, 0.13, 0.14]),
             lots.one("tilt", [20, 25, 35, 40, 50, 55]),
         ),
+        missing=lots.one("missing", [0.062, 0.069, 0.073, 0.078, 0.083, 0.091]),
+        tried=lots.one("tried", [(1, 1, 1), (-1, -1, 1), (-1, 1, -1)]),
         hidden=(h1, h2, lots.one("hidden slide", [0.05, 0.06, 0.07, 0.09, 0.1]), h4),
     )
 
@@ -83,6 +88,7 @@ def cells(given):
     measured = measured_at(given.in_the_workshop, joint_values(KINDS, given.hidden))
     ahead, below, tilt = given.gripper
     theta1, theta2, slide, theta4 = given.values
+    d_2, d_3, d_4 = ("" if sign > 0 else "-" for sign in given.tried)
     return {
         "arm": f"""\
 # Lengths of the arm, in metres
@@ -100,6 +106,9 @@ corner = {row(given.corner)}
 ahead = {number(ahead)}
 below = {number(below)}
 tilt = np.deg2rad({number(tilt)})""",
+        "missing": f"""\
+missing = {number(given.missing)}  # metres
+tried = {{"d_2": {d_2}missing, "d_3": {d_3}missing, "d_4": {d_4}missing}}""",
         "measured": matrix("X_measured", measured, decimals=(4, 4, 4, 5)),
     }
 
@@ -123,6 +132,22 @@ QUARTERS = joint_values(KINDS, [90, -90, 0.2, 90])
 def all_converted(arm, q):
     """T4 of somebody who converts the whole joint vector to radians, the slide too."""
     return arm.T(0, 4, [*q[:2], np.deg2rad(q[2]), q[3]])
+
+
+def wandering(given):
+    """What to say of what is missing in d_1 as it is tried in each place, and the place where it is right."""
+    up = {"d_2": 1, "d_3": -1, "d_4": -1}
+    (right,) = (place for place, sign in zip(up, given.tried, strict=True) if sign == up[place])
+    because = {
+        place: f"axis {place[-1]} points {'up' if sense > 0 else 'down'}, so "
+        + (
+            "with this sign the height comes out."
+            if place == right
+            else f"what stands there is {'added to' if sense > 0 else 'taken off'} the height: see its sign."
+        )
+        for place, sense in up.items()
+    }
+    return because, right
 
 
 def heading(sign2=1, sign4=-1):
@@ -235,14 +260,7 @@ def exercise(given):
                 "heights",
                 "Heights that wander",
                 1,
-                Choice(
-                    {
-                        "d_2": "both axes point up: the two add up to the height.",
-                        "d_3": "axis 3 points down, so 0.087 there is taken off the height: it should be negative.",
-                        "d_4": "axis 4 points down, so 0.087 there is taken off the height: it should be negative.",
-                    },
-                    right="d_2",
-                ),
+                Choice(*wandering(given)),
                 section="sec-prismatic-wander",
             ),
             Part(

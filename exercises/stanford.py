@@ -252,6 +252,18 @@ def exercise(given):
                         lambda arm, q: STEP * arm.T(0, 5, q)[:3, 2],
                     ),
                     Trap(
+                        "This goes straight up. Joint 2 has tilted the boom, and the slide pushes along it.",
+                        lambda arm, q: [0, 0, STEP],
+                    ),
+                    Trap(
+                        "The line is right, but this goes backwards along it: the boom moves out.",
+                        lambda arm, q: -STEP * arm.T(0, 2, q)[:3, 2],
+                    ),
+                    Trap(
+                        "This is where the wrist is, a place; asked for is the way from one place to the next.",
+                        lambda arm, q: arm.T(0, 3, q)[:3, 3],
+                    ),
+                    Trap(
                         "This is where the hand is after the step; how far did it move?",
                         lambda arm, q: arm.T(0, 6, [*q[:2], q[2] + STEP, *q[3:]])[:3, 3],
                     ),

@@ -155,10 +155,20 @@ class Formula(Valued):
 
 @dataclass(frozen=True, kw_only=True)
 class Function(Valued):
-    """A function; it is called with the arguments of each probe."""
+    """A function; it is called with the arguments of each probe.
+
+    Parameters
+    ----------
+    calls : sequence of tuple
+    signature : str
+        As the task has it.
+    kinds : sequence of str
+        What each call is about, such as ``"parallel lines"``, so that it can be said where a function fails.
+    """
 
     calls: Sequence[Probe]
     signature: str = "f(q)"
+    kinds: Sequence[str] = ()
 
     kind = "function"
 

@@ -219,9 +219,14 @@ def _judge_reasoned(part: Part, asks: ReasonedChoice, reading: Mapping[str, Any]
             part, UNREADABLE, f"It should be {wanted(part)}, each in quotation marks, with commas between."
         )
     (option,) = chosen
-    if option != asks.right:
-        return make_mark(part, WRONG, _sentence(asks.options[option]))
     false, missing = sorted(letters - asks.needed), asks.needed - letters
+    if option != asks.right:
+        says = _sentence(asks.options[option])
+        if false:
+            says += f" And reason {false[0]} does not hold: {asks.reasons[false[0]].says}"
+        elif not letters:
+            says += f" Go through the reasons {' '.join(asks.reasons)} first: the choice follows from those that hold."
+        return make_mark(part, WRONG, says)
     if not false and not missing:
         return make_mark(part, RIGHT, _sentence(asks.options[option]))
     earned = REASONED * max(0, len(letters & asks.needed) - len(false)) / len(asks.needed)

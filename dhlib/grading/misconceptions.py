@@ -18,7 +18,7 @@ import numpy as np
 from dhlib.chain import Chain
 from dhlib.errors import DHError, DHWarning
 from dhlib.grading.exercise import Part, Trap
-from dhlib.grading.forms import Arm, Probe, Quantity, Valued
+from dhlib.grading.forms import Arm, Function, Probe, Quantity, Valued
 from dhlib.grading.retelling import ORDER, Retelling, altered, in_degrees, scaled, with_ends, with_joints
 from dhlib.joints import Joint, Prismatic, Revolute
 from dhlib.scalars import FloatArray
@@ -80,7 +80,7 @@ KNOWN = {
         Misconception(5, "parallel", "where d stands along parallel axes", "sec-placing-parallel", 1.0),
         Misconception(6, "a_and_d", "which length is a and which is d", "sec-classic-parameters",
                       modified="sec-modified-parameters"),
-        Misconception(7, "sign", "the sign of a, d or α", "sec-classic-trap-sign", 0.5, "sec-modified-parameters"),
+        Misconception(7, "sign", "the sign of α", "sec-classic-trap-sign", 0.5, "sec-modified-parameters"),
         Misconception(8, "ends", "base and tool, and on which side they stand", "sec-base-and-tool", 0.5),
         Misconception(9, "degrees", "degrees and radians", "sec-trap-degrees", 0.5),
         Misconception(10, "unit", "the unit of length", "sec-bt-trap-units", 0.75),
@@ -91,6 +91,14 @@ KNOWN = {
                       modified="sec-modified-orders"),
         Misconception(15, "improper", "whether the matrix is a rotation at all", "sec-pose", 0.0),
         Misconception(16, "entrywise", "* and @", "sec-trap-order"),
+        Misconception(17, "length_sign", "the sign of a or d", "sec-classic-parameters", 0.5,
+                      "sec-modified-parameters"),
+        Misconception(18, "lengths", "which length belongs to which link", "sec-classic-parameters", 0.5,
+                      "sec-modified-parameters"),
+        Misconception(19, "missing", "whether each link matrix is in the product, once", "sec-classic-product",
+                      modified="sec-modified-product"),
+        Misconception(20, "counting", "counting from 0 or from 1", "sec-classic-product",
+                      modified="sec-modified-product"),
     )
 }
 # fmt: on
@@ -100,7 +108,11 @@ TRAP = Misconception(0, "trap", "the task itself", "")
 
 #: Where the first fits, the others are the same mistake in part: the other convention is another order of the steps,
 #: and its first row stands one row off.
-COVERS = {"trap": frozenset(KNOWN), "convention": frozenset({"steps", "row"}), "row": frozenset({"sign", "a_and_d"})}
+COVERS = {
+    "trap": frozenset(KNOWN),
+    "convention": frozenset({"steps", "row"}),
+    "row": frozenset({"sign", "length_sign", "lengths", "a_and_d"}),
+}
 
 Told = Iterator[tuple[str, str, Arm]]
 """Key of a misconception, what to say, and the arm as it is then told."""
@@ -117,8 +129,7 @@ def retellings(chain: Chain) -> Told:
     yield from _parameters(chain)
     yield from _ends(chain)
     yield from _units(chain)
-    says = "The factors of {part} stand in reverse order: the link nearest the base comes first."
-    yield "reverse", says, Retelling(chain, reverse=True)
+    yield from _products(chain)
     says = "{part} is multiplied entry by entry: for arrays the product of matrices is @, and * is another thing."
     yield "entrywise", says, Retelling(chain, entrywise=True)
     yield from _orders(chain)
@@ -142,13 +153,10 @@ def _conventions(chain: Chain) -> Told:
 
 def _rows(chain: Chain) -> Told:
     links = [(joint.a, joint.alpha) for joint in chain.joints]
-    down, up = [(0.0, 0.0), *links[:-1]], [*links[1:], (0.0, 0.0)]
-    for words, moved in (
-        ("down", down),
-        ("down", [links[-1], *links[:-1]]),
-        ("up", up),
-        ("up", [*links[1:], links[0]]),
-    ):
+    shifted = [("down", [(0.0, 0.0), *links[:-1]]), ("up", [*links[1:], (0.0, 0.0)])]
+    if len(links) > 2 or any(alpha for _, alpha in links):  # two lengths that change places are another slip
+        shifted += [("down", [links[-1], *links[:-1]]), ("up", [*links[1:], links[0]])]
+    for words, moved in shifted:
         joints = [joint.replace(a=a, alpha=alpha) for joint, (a, alpha) in zip(chain.joints, moved, strict=True)]
         yield (
             "row",
@@ -214,9 +222,17 @@ def _parameters(chain: Chain) -> Told:
     for i, joint in enumerate(chain.joints, 1):
         k = i if classic else i - 1
         yield "sign", f"In {{part}} α_{k} has the wrong sign.", altered(chain, i, alpha=-joint.alpha)
-        yield "sign", f"In {{part}} a_{k} has the wrong sign.", altered(chain, i, a=-joint.a)
+        yield (
+            "length_sign",
+            f"In {{part}} a_{k} has the wrong sign: it is measured along x_{k}, from axis to axis.",
+            altered(chain, i, a=-joint.a),
+        )
         if joint.kind == "R":
-            yield "sign", f"In {{part}} d_{i} has the wrong sign.", altered(chain, i, d=-joint.d)
+            yield (
+                "length_sign",
+                f"In {{part}} d_{i} has the wrong sign: it counts from x_{i - 1} to x_{i}, along joint axis {i}.",
+                altered(chain, i, d=-joint.d),
+            )
             exchanged = altered(chain, i, a=joint.d, d=joint.a)
             yield "a_and_d", f"In {{part}} a_{k} and d_{i} are exchanged: d is measured along z, a along x.", exchanged
     yield (
@@ -224,14 +240,31 @@ def _parameters(chain: Chain) -> Told:
         "In {part} every α has the wrong sign: α turns z into the next z, by the right-hand rule about x.",
         altered(chain, alpha=lambda joint: -joint.alpha),
     )
+    for i, (joint, after) in enumerate(pairwise(chain.joints), 1):
+        k = i if classic else i - 1
+        if joint.a != 0 and after.a != 0:
+            yield (
+                "lengths",
+                f"In {{part}} a_{k} and a_{k + 1} have changed places: a_{k} is the length of link {k}, which stands "
+                f"before joint {k + 1}.",
+                altered(altered(chain, i, a=after.a), i + 1, a=joint.a),
+            )
     yield (
-        "sign",
+        "length_sign",
         "In {part} every a has the wrong sign: a is measured along x.",
         altered(chain, a=lambda joint: -joint.a),
     )
     if set(chain.kinds) == {"R"}:
         exchanged = altered(chain, a=lambda joint: joint.d, d=lambda joint: joint.a)
         yield "a_and_d", "In {part} a and d are exchanged: d is measured along z, a along x.", exchanged
+
+
+def _products(chain: Chain) -> Told:
+    says = "The factors of {part} stand in reverse order: the link nearest the base comes first."
+    yield "reverse", says, Retelling(chain, reverse=True)
+    for i in range(1, chain.n + 1):
+        says = f"In {{part}} the link matrix of joint {i} is missing: each joint on the way has one factor."
+        yield "missing", says, Retelling(chain, without=i)
 
 
 def _ends(chain: Chain) -> Told:
@@ -334,6 +367,19 @@ def ends_too_many(chain: Chain, values: FloatArray) -> Iterator[tuple[str, str, 
         yield "ends", says, told
 
 
+def miscounted(part: Part, asks: Function) -> Iterator[tuple[str, str, FloatArray]]:
+    """What a function of a link's number and the joint values gives that counts wrongly."""
+
+    def told(link: int, value: int) -> FloatArray:
+        calls = [((i - 1 + link) % part.chain.n + 1, np.roll(q, value)) for i, q in asks.calls]
+        return np.array([np.asarray(asks.quantity(part.chain, *call), dtype=float) for call in calls])
+
+    says = "{part} gives the link before the one asked for: links count from 1, so link i is in row i - 1 of a list."
+    yield "counting", says, told(-1, 0)
+    says = "{part} takes the value of the joint before: joints count from 1, so that of joint i is q[i - 1]."
+    yield "counting", says, told(0, 1)
+
+
 @lru_cache(maxsize=256)
 def would_have_given(part: Part) -> tuple[tuple[Slip, FloatArray], ...]:
     """Every answer to a part that a known misconception leads to, with the words for it.
@@ -359,6 +405,9 @@ def _would_have_given(part: Part) -> Iterator[tuple[Slip, FloatArray]]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DHWarning)
         right = asks.values(part.chain)
+        if isinstance(asks, Function) and asks.signature.endswith("(i, q)"):
+            for key, says, values in miscounted(part, asks):
+                yield Slip(KNOWN[key], says.format(part=part.id)), values
         if asks.shape == (4, 4):
             for key, says, values in (*finishings(right), *ends_too_many(part.chain, right)):
                 yield Slip(KNOWN[key], says.format(part=part.id)), values

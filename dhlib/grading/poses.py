@@ -56,6 +56,8 @@ def describe(asks: Valued, values: FloatArray, right: FloatArray, unit: str) -> 
     if asks.each:
         rows = [str(k + 1) for k in np.flatnonzero(off.reshape(len(off), off.shape[1], -1).any(axis=(0, 2)))]
         return f"{asks.each.capitalize()} {listed(rows)} {'is' if len(rows) == 1 else 'are'} not right yet.{where}"
+    if isinstance(asks, Function) and asks.kinds:
+        return f"Not all that it returns is right.{where}"
     if asks.means is not None:
         return f"These values do not lead where they should.{where}"
     if asks.shape == (4, 4):
@@ -75,6 +77,12 @@ def _where(asks: Valued, fine: list[bool]) -> str:
         return ""
     if not isinstance(asks, Function):
         return f" At {sum(fine)} of {len(fine)} sets of joint angles tried it is right, at the others it is not."
+    if asks.kinds:
+        wrong_kinds = {kind for kind, right in zip(asks.kinds, fine, strict=True) if not right}
+        kinds = list(dict.fromkeys(asks.kinds))
+        good = [kind for kind in kinds if kind not in wrong_kinds]
+        known = f" It is right for {listed(good)}, but not for" if good else " See"
+        return f"{known} {listed([kind for kind in kinds if kind in wrong_kinds])}."
     numbers = [call[0] for call in asks.calls if isinstance(call[0], int)]
     if len(numbers) == len(fine):
         wrong = sorted({i for i, right in zip(numbers, fine, strict=True) if not right})

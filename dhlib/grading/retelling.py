@@ -36,6 +36,8 @@ class Retelling:
         The link matrices multiplied in reverse order.
     entrywise : bool
         The link matrices multiplied entry by entry.
+    without : int
+        The link whose matrix is left out of products; 0 for none.
     joint_scale, twist_scale : float
         Joint angles and twists taken in a wrong unit.
     """
@@ -44,6 +46,7 @@ class Retelling:
     steps: tuple[str, ...] = ()
     reverse: bool = False
     entrywise: bool = False
+    without: int = 0
     joint_scale: float = 1.0
     twist_scale: float = 1.0
 
@@ -83,7 +86,8 @@ class Retelling:
         if i > j:
             back: FloatArray = inverse(self.T(j, i, q))
             return back
-        matrices = [self.A(k, q) for k in range(i + 1, j + 1)]
+        links = range(i + 1, j + 1)
+        matrices = [self.A(k, q) for k in links if k != self.without or len(links) == 1]
         if self.entrywise:
             entries: FloatArray = np.prod(matrices, axis=0)
             return entries

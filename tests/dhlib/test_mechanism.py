@@ -728,7 +728,7 @@ def test_the_first_axis_that_fails_is_named(i, change, joint, reason):
 
 def test_a_wrong_side_is_said_in_lengths():
     verdict = assert_not_same(changed(CORKE, 4, d=minus), CORKE)
-    assert (verdict.joint, verdict.reason) == (5, "axis 5 misses its place by 0.8636 once axes 1 to 4 are laid")
+    assert (verdict.joint, verdict.reason) == (5, "axis 5 misses its place by 0.8636 once axes 1 to 4 are in place")
 
 
 def test_other_joints():
