@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from dhlib import Chain, robots
-from dhlib.grading.asking import EXACT, METRES, link_function, pose
-from dhlib.grading.course.sources import number, row
+from dhlib.grading.asking import EXACT, last_pose, link_function, pose, which_lengths
+from dhlib.grading.course.sources import lengths, row
 from dhlib.grading.exercise import Exercise, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.forms import Choice, Formula, Frames, Table
 from dhlib.grading.pictures import described, same_for_all
 
 #: Rows of the table that hold a length.
@@ -62,23 +62,10 @@ def draw(lots):
     )
 
 
-def off_by(given, lengths):
-    """What to say to whoever took one of the sets of lengths."""
-    away = 1000 * np.linalg.norm(given.found(lengths) - given.found())
-    if lengths == given.its_set:
-        return f"the position by set {lengths} agrees with the measured one to the last digit."
-    return f"with set {lengths} the flange is {away:.0f} mm from where it was measured."
-
-
 def cells(given):
     """The given cells of the notebook."""
     return {
-        "arm": f"""\
-# Lengths of the arm, in metres
-b = {number(given.b)}
-l1 = {number(given.l1)}
-l2 = {number(given.l2)}
-f = {number(given.f)}""",
+        "arm": lengths("metres", b=given.b, l1=given.l1, l2=given.l2, f=given.f),
         "angles": f"q = np.deg2rad({row(given.angles)})",
         "calibration": f"""\
 q_calibrated = np.deg2rad({row(given.calibrated)})
@@ -119,7 +106,8 @@ def struck_out(given):
     """T6 by the table of the 7C with row 3 left out."""
     first, second, _, elbow, fore, wrist, last = robots.pa10_7c(lengths="A").joints
     rows = [first.replace(d=given.b), second, elbow, fore.replace(d=given.l2), wrist, last.replace(d=given.f)]
-    return lambda arm, q: Chain(rows, "classic").fk(q)
+    says = "This is the table of the 7C with a row struck out, and the upper arm went with it."
+    return Trap(says, lambda arm, q: Chain(rows, "classic").fk(q))
 
 
 def exercise(given):
@@ -184,28 +172,7 @@ def exercise(given):
                 ],
                 kinematics=False,
             ),
-            Part(
-                "T6",
-                "T6 in numbers",
-                2,
-                Numbers(pose(0, 6), at=at, **METRES),
-                section="sec-pa10-6c",
-                traps=[
-                    Trap(
-                        "This is the table of the 7C with a row struck out, and the upper arm went with it.",
-                        struck_out(given),
-                    )
-                ],
-                kinematics=False,
-            ),
-            Part(
-                "T6_quarter",
-                "T6 at quarter turns",
-                1,
-                Numbers(pose(0, 6), at=QUARTERS, **METRES),
-                section="sec-pa10-6c",
-                kinematics=False,
-            ),
+            *last_pose(6, at, QUARTERS, "sec-pa10-6c", traps=[struck_out(given)]),
             Part(
                 "upper_arm",
                 "Where the upper arm went",
@@ -235,20 +202,7 @@ def exercise(given):
                 ),
                 section="sec-pa10-6c",
             ),
-            Part(
-                "lengths",
-                "Which set of lengths",
-                2,
-                Choice(
-                    {
-                        "A": off_by(given, "A"),
-                        "B": off_by(given, "B"),
-                        "B2": off_by(given, "B2"),
-                    },
-                    right=given.its_set,
-                ),
-                section="sec-pa10-lengths",
-            ),
+            which_lengths(given.found, SETS, given.its_set, "sec-pa10-lengths"),
             Part(
                 "plate",
                 "What a ruler says",

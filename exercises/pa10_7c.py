@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dhlib import Chain, robots
-from dhlib.grading.asking import EXACT, METRES, constant, link_function, measured_at, pose
-from dhlib.grading.course.sources import matrix, number, row
+from dhlib.grading.asking import EXACT, constant, last_pose, link_function, measured_at, pose, which_lengths
+from dhlib.grading.course.sources import lengths, matrix, row
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 from dhlib.grading.pictures import described, same_for_all
@@ -84,23 +84,10 @@ def draw(lots):
     )
 
 
-def off_by(given, lengths):
-    """What to say to whoever took one of the sets of lengths."""
-    away = 1000 * np.linalg.norm(given.found(lengths) - given.found())
-    if lengths == given.its_set:
-        return f"the position by set {lengths} agrees with the measured one to the last digit."
-    return f"with set {lengths} the flange is {away:.0f} mm from where it was measured."
-
-
 def cells(given):
     """The given cells of the notebook."""
     return {
-        "arm": f"""\
-# Lengths of the arm, in metres
-b = {number(given.b)}
-l1 = {number(given.l1)}
-l2 = {number(given.l2)}
-f = {number(given.f)}""",
+        "arm": lengths("metres", b=given.b, l1=given.l1, l2=given.l2, f=given.f),
         "angles": f"q = np.deg2rad({row(given.angles)})",
         "measured": matrix("T_given", given.hand, decimals=(4, 4, 4, 5)),
         "calibration": f"""\
@@ -174,22 +161,7 @@ def exercise(given):
                 section="sec-pa10-product",
                 kinematics=False,
             ),
-            Part(
-                "T7",
-                "T7 in numbers",
-                2,
-                Numbers(pose(0, 7), at=at, **METRES),
-                section="sec-pa10-product",
-                kinematics=False,
-            ),
-            Part(
-                "T7_quarter",
-                "T7 at quarter turns",
-                1,
-                Numbers(pose(0, 7), at=QUARTERS, **METRES),
-                section="sec-pa10-product",
-                kinematics=False,
-            ),
+            *last_pose(7, at, QUARTERS, "sec-pa10-product"),
             Part(
                 "T04",
                 "Shoulder and elbow, in symbols",
@@ -288,20 +260,7 @@ def exercise(given):
                 ),
                 section="sec-pa10-redundancy",
             ),
-            Part(
-                "lengths",
-                "Which set of lengths",
-                2,
-                Choice(
-                    {
-                        "A": off_by(given, "A"),
-                        "B": off_by(given, "B"),
-                        "B2": off_by(given, "B2"),
-                    },
-                    right=given.its_set,
-                ),
-                section="sec-pa10-lengths",
-            ),
+            which_lengths(given.found, SETS, given.its_set, "sec-pa10-lengths"),
         ],
     )
 

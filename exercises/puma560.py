@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, robots
-from dhlib.grading.asking import EXACT, METRES, link_function, measured_at, pose, with_gripper
-from dhlib.grading.course.sources import matrix, number, row
+from dhlib.grading.asking import EXACT, METRES, last_pose, link_function, measured_at, pose, with_gripper
+from dhlib.grading.course.sources import lengths, matrix, number, row
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.forms import Choice, Formula, Frames, Table
 from dhlib.grading.pictures import described, same_for_all
 
 CRAIG = robots.puma560("modified", "craig")
@@ -80,12 +80,7 @@ def cells(given):
     measured = measured_at(given.in_the_workshop, np.deg2rad(given.hidden))
     length, turn, tilt = given.gripper
     return {
-        "arm": f"""\
-# Lengths of the arm, in metres
-a2 = {number(given.a2)}
-a3 = {number(given.a3)}
-d3 = {number(given.d3)}
-d4 = {number(given.d4)}""",
+        "arm": lengths("metres", a2=given.a2, a3=given.a3, d3=given.d3, d4=given.d4),
         "angles": f"q = np.deg2rad({row(given.angles)})",
         "ends": f"""\
 # Lengths in metres, turn and tilt in radians
@@ -380,22 +375,7 @@ def exercise(given):
                 ),
                 section="sec-puma560-corke",
             ),
-            Part(
-                "T6",
-                "T6 in numbers",
-                2,
-                Numbers(pose(0, 6), at=at, **METRES),
-                section="sec-puma560-product",
-                kinematics=False,
-            ),
-            Part(
-                "T6_quarter",
-                "T6 at quarter turns",
-                1,
-                Numbers(pose(0, 6), at=QUARTERS, **METRES),
-                section="sec-puma560-poses",
-                kinematics=False,
-            ),
+            *last_pose(6, at, QUARTERS, "sec-puma560-product", at_quarters="sec-puma560-poses"),
             *with_gripper(arm, "T6", ("With a gripper", "Back from X"), at, np.deg2rad(given.hidden), **METRES),
         ],
     )

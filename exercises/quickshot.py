@@ -6,7 +6,7 @@ import numpy as np
 
 from dhlib import Chain, Revolute, Rx, Rz, Tx, Ty, Tz
 from dhlib.grading.asking import link_function, measured_at, pose, with_gripper
-from dhlib.grading.course.sources import matrix, number, row
+from dhlib.grading.course.sources import lengths, matrix, number, row
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 from dhlib.grading.pictures import described, same_for_all
@@ -80,13 +80,14 @@ def cells(given):
     """The given cells of the notebook."""
     measured = measured_at(given.in_the_workshop, np.deg2rad(given.hidden))
     return {
-        "arm": f"""\
-# Lengths of the arm, in millimetres
-height = {number(given.height)}
-ahead = {number(given.ahead)}
-upper_arm = {number(given.upper_arm)}
-aside = {number(given.aside)}
-forearm = {number(given.forearm)}""",
+        "arm": lengths(
+            "millimetres",
+            height=given.height,
+            ahead=given.ahead,
+            upper_arm=given.upper_arm,
+            aside=given.aside,
+            forearm=given.forearm,
+        ),
         "angles": f"q = np.deg2rad({row(given.angles)})",
         "ends": f"""\
 # Lengths in millimetres, the tilt in radians

@@ -5,10 +5,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, robots
-from dhlib.grading.asking import EXACT, METRES, joint_values, link_function, measured_at, pose, with_gripper
-from dhlib.grading.course.sources import matrix, number, row
+from dhlib.grading.asking import (
+    EXACT,
+    METRES,
+    joint_values,
+    last_pose,
+    link_function,
+    measured_at,
+    pose,
+    slide_converted,
+    with_gripper,
+)
+from dhlib.grading.course.sources import lengths, matrix, number, row
 from dhlib.grading.exercise import Exercise, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.forms import Choice, Formula, Frames, Table
 from dhlib.grading.pictures import described, same_for_all
 
 COBRA = robots.cobra600("classic")
@@ -90,11 +100,7 @@ def cells(given):
     theta1, theta2, slide, theta4 = given.values
     d_2, d_3, d_4 = ("" if sign > 0 else "-" for sign in given.tried)
     return {
-        "arm": f"""\
-# Lengths of the arm, in metres
-d1 = {number(given.d1)}
-a1 = {number(given.a1)}
-a2 = {number(given.a2)}""",
+        "arm": lengths("metres", d1=given.d1, a1=given.a1, a2=given.a2),
         "joints": f"""\
 # The joint vector: angles in radians, the slide in metres
 theta_1, theta_2, theta_4 = np.deg2rad({row((theta1, theta2, theta4))})
@@ -127,11 +133,6 @@ def figure():
 
 SYMBOLS = ["theta1", "theta2", "d3", "theta4"]
 QUARTERS = joint_values(KINDS, [90, -90, 0.2, 90])
-
-
-def all_converted(arm, q):
-    """T4 of somebody who converts the whole joint vector to radians, the slide too."""
-    return arm.T(0, 4, [*q[:2], np.deg2rad(q[2]), q[3]])
 
 
 def wandering(given):
@@ -231,31 +232,7 @@ def exercise(given):
                 ],
                 kinematics=False,
             ),
-            Part(
-                "T4",
-                "T4 in numbers",
-                2,
-                Numbers(pose(0, 4), at=at, **METRES),
-                section="sec-prismatic-scara",
-                arm=bare,
-                traps=[
-                    Trap(
-                        "The third joint was converted to radians too. It slides: metres stay metres.",
-                        all_converted,
-                        "degrees",
-                    )
-                ],
-                kinematics=False,
-            ),
-            Part(
-                "T4_quarter",
-                "T4 at quarter turns",
-                1,
-                Numbers(pose(0, 4), at=QUARTERS, **METRES),
-                section="sec-prismatic-scara",
-                arm=bare,
-                kinematics=False,
-            ),
+            *last_pose(4, at, QUARTERS, "sec-prismatic-scara", arm=bare, traps=[slide_converted(4, 3)]),
             Part(
                 "heights",
                 "Heights that wander",

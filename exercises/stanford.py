@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dhlib import Chain, robots
-from dhlib.grading.asking import EXACT, METRES, joint_values, link_function, pose
-from dhlib.grading.course.sources import number, row
+from dhlib.grading.asking import EXACT, joint_values, last_pose, link_function, pose, slide_converted
+from dhlib.grading.course.sources import lengths, number, row
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
 from dhlib.grading.pictures import described, same_for_all
@@ -53,11 +53,7 @@ def cells(given):
     """The given cells of the notebook."""
     first, second, slide, *wrist = given.values
     return {
-        "arm": f"""\
-# Lengths of the arm, in metres
-d1 = {number(given.d1)}
-d2 = {number(given.d2)}
-d6 = {number(given.d6)}""",
+        "arm": lengths("metres", d1=given.d1, d2=given.d2, d6=given.d6),
         "joints": f"""\
 # The joint vector: angles in radians, the slide in metres
 q = np.deg2rad({row((first, second, 0, *wrist))})
@@ -82,11 +78,6 @@ def figure():
 SYMBOLS = ["theta1", "theta2", "d3", "theta4", "theta5", "theta6"]
 QUARTERS = joint_values(KINDS, [90, 90, 0.5, 90, -90, 180])
 STEP = 0.1
-
-
-def all_converted(arm, q):
-    """T6 of somebody who converts the whole joint vector to radians, the slide too."""
-    return arm.T(0, 6, [*q[:2], np.deg2rad(q[2]), *q[3:]])
 
 
 def pushed(arm, q):
@@ -212,29 +203,12 @@ def exercise(given):
                 ],
                 kinematics=False,
             ),
-            Part(
-                "T6",
-                "T6 in numbers",
-                2,
-                Numbers(pose(0, 6), at=at, **METRES),
-                section="sec-prismatic-stanford",
-                traps=[
-                    Trap(
-                        "The third joint was converted to radians too. It slides: metres stay metres.",
-                        all_converted,
-                        "degrees",
-                    ),
-                    *fixed_angle(0, 6),
-                ],
-                kinematics=False,
-            ),
-            Part(
-                "T6_quarter",
-                "T6 at quarter turns",
-                1,
-                Numbers(pose(0, 6), at=QUARTERS, **METRES),
-                section="sec-prismatic-stanford",
-                kinematics=False,
+            *last_pose(
+                6,
+                at,
+                QUARTERS,
+                "sec-prismatic-stanford",
+                traps=[slide_converted(6, 3), *fixed_angle(0, 6)],
             ),
             Part(
                 "push",

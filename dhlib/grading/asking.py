@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -66,7 +66,74 @@ def link_function(n: int, seed: int, rounds: int = 2, length_tolerance: float = 
     )
 
 
+def slide_converted(n: int, slide: int) -> Trap:
+    """The last pose of somebody who converts the whole joint vector to radians, the slide too."""
+
+    def all_converted(arm: Arm, q: Probe) -> Any:
+        return arm.T(0, n, [np.deg2rad(value) if i == slide else value for i, value in enumerate(q, 1)])
+
+    says = f"Joint {slide} was converted to radians too. It slides: metres stay metres."
+    return Trap(says, all_converted, "degrees")
+
+
 # Parts
+
+
+def last_pose(
+    n: int,
+    at: Sequence[float],
+    quarters: Sequence[float],
+    section: str,
+    arm: Chain | None = None,
+    traps: Sequence[Trap] = (),
+    at_quarters: str = "",
+) -> list[Part]:
+    """Two parts: the pose of frame n in numbers, in metres, at the joint values of the page and at quarter turns.
+
+    Parameters
+    ----------
+    n : int
+        Of the last frame; the parts are called after it, ``T6`` and ``T6_quarter``.
+    at, quarters : sequence of float
+    section : str
+    arm : Chain, optional
+    traps : sequence of Trap
+        Of the first part.
+    at_quarters : str, optional
+        The section of the second part, if it is another.
+    """
+
+    def asked(part: str, title: str, points: float, values: Sequence[float], **more: Any) -> Part:
+        asks = Numbers(
+            pose(0, n), at=values, tolerance=METRES["tolerance"], length_tolerance=METRES["length_tolerance"]
+        )
+        return Part(part, title, points, asks, arm=arm, kinematics=False, **more)
+
+    return [
+        asked(f"T{n}", f"T{n} in numbers", 2, at, section=section, traps=traps),
+        asked(f"T{n}_quarter", f"T{n} at quarter turns", 1, quarters, section=at_quarters or section),
+    ]
+
+
+def which_lengths(found: Callable[[str], FloatArray], sets: Sequence[str], right: str, section: str) -> Part:
+    """Which set of lengths an arm has whose position was measured.
+
+    Parameters
+    ----------
+    found : callable
+        Where the flange would be with each set, in metres.
+    sets : sequence of str
+    right : str
+    section : str
+    """
+    off = {each: 1000 * float(np.linalg.norm(found(each) - found(right))) for each in sets}
+    because = {
+        each: f"the position by set {each} agrees with the measured one to the last digit."
+        if each == right
+        else f"with set {each} the flange is {away:.0f} mm from where it was measured."
+        for each, away in off.items()
+    }
+    return choice("lengths", "Which set of lengths", right, because, section, points=2)
 
 
 def choice(part: str, title: str, right: str, because: Mapping[str, str], section: str, points: float = 1) -> Part:

@@ -20,6 +20,21 @@ def number(value: float, decimals: int = 6) -> str:
     return str(int(rounded)) if rounded == int(rounded) else repr(rounded)
 
 
+def lengths(unit: str, **values: float) -> str:
+    """The cell that gives the lengths of an arm.
+
+    Examples
+    --------
+    >>> print(lengths("metres", d1=0.4, d2=0.15))
+    # Lengths of the arm, in metres
+    d1 = 0.4
+    d2 = 0.15
+    """
+    return "\n".join(
+        [f"# Lengths of the arm, in {unit}", *(f"{name} = {number(value)}" for name, value in values.items())]
+    )
+
+
 def row(values: ArrayLike, decimals: int = 6) -> str:
     """A row of numbers, in brackets.
 
