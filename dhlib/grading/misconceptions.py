@@ -154,7 +154,7 @@ def _conventions(chain: Chain) -> Told:
 def _rows(chain: Chain) -> Told:
     links = [(joint.a, joint.alpha) for joint in chain.joints]
     shifted = [("down", [(0.0, 0.0), *links[:-1]]), ("up", [*links[1:], (0.0, 0.0)])]
-    if len(links) > 2 or any(alpha for _, alpha in links):  # two lengths that change places are another slip
+    if len(links) != 2 or any(alpha for _, alpha in links):  # two lengths that change places are another slip
         shifted += [("down", [links[-1], *links[:-1]]), ("up", [*links[1:], links[0]])]
     for words, moved in shifted:
         joints = [joint.replace(a=a, alpha=alpha) for joint, (a, alpha) in zip(chain.joints, moved, strict=True)]

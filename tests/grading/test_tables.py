@@ -79,7 +79,7 @@ def test_what_the_library_places_itself_is_right(judge, arm):
         (with_cells((1, "d", 0)), 3, "ends", "frame 0 would not be where"),
         (with_cells((4, "d", 0)), 3, "ends", "its origin is 250 mm away"),
         (with_cells((1, "alpha", pi / 2)), 3, "sign", "α_1 has the wrong sign"),
-        (with_cells((3, "d", -28)), 3, "sign", "d_3 has the wrong sign"),
+        (with_cells((3, "d", -28)), 3, "length_sign", "d_3 has the wrong sign"),
         ([[r[0], r[1] / 1000, r[2] / 1000, r[3]] for r in RIGHT], 3, "unit", "a thousand times too small"),
         ([[r[0], r[1], r[2], r[3] * 180 / pi] for r in RIGHT], 3, "degrees", "in radians"),
         (robots.quickshot("modified"), 2, "convention", "modified convention; asked for is a classic"),
