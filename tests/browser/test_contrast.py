@@ -7,8 +7,6 @@ mixtures, and lines across links and joints; still figures, and those to move.
 from __future__ import annotations
 
 import io
-import os
-import random
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sampling import some
 
 pytestmark = [pytest.mark.book, pytest.mark.browser]
 
@@ -40,12 +39,7 @@ WITH_FIGURES = sorted(
     for path in (ROOT / "book").glob("*.md")
     if re.search(r"glue_figure|show_figure|\{dh-(link|place|robot)\}", path.read_text("utf-8"))
 )
-SEED = os.environ.get("PYTEST_XDIST_TESTRUNUID", "0")
-CHOSEN = (
-    WITH_FIGURES
-    if os.environ.get("DHBOOK_FULL")
-    else LIVE + random.Random(SEED).sample([name for name in WITH_FIGURES if name not in LIVE], 1)
-)
+CHOSEN = [*LIVE, *some([name for name in WITH_FIGURES if name not in LIVE], 1)]
 
 MEASURE = """() => {
     const roots = [document, ...[...document.querySelectorAll("dh-link, dh-place, dh-robot")].map(e => e.shadowRoot)];
