@@ -28,8 +28,8 @@ const editor = () => (loading ??= new Promise((done, failed) => {
 
 /** A cell that nobody sees and others need. */
 class Hidden {
-  constructor({ k, source }) {
-    Object.assign(this, { k, text: source, ran: null });
+  constructor(about) {
+    Object.assign(this, { k: about.k, about, text: about.source, ran: null });
   }
 
   async quietly() {

@@ -26,6 +26,7 @@ from notebooks import (
     WithoutHelper,
     bound,
     has_notebook,
+    loaded,
     names_of_helper,
     needed_before,
     unneeded,
@@ -122,6 +123,22 @@ def draws_with_matplotlib(tree: ast.Module) -> bool:
     return any(name.split(".")[0] == "matplotlib" or name == "dhlib.plot" for name in imported(tree))
 
 
+def used(tree: ast.Module) -> set[str]:
+    """Return the names that a cell reads before it gives them a meaning of its own."""
+    names: set[str] = set()
+    own: set[str] = set()
+    for statement in tree.body:
+        inner = {
+            name
+            for node in ast.walk(statement)
+            if isinstance(node, ast.For | ast.comprehension)
+            for name in bound(node.target)
+        }
+        names |= loaded(statement) - own - inner
+        own |= bound(statement)
+    return names
+
+
 class Missing:
     """Follows from cell to cell what cannot run in a page: who imports such a module, and who uses what that made."""
 
@@ -132,7 +149,7 @@ class Missing:
         """Return the module that the next cell needs and the page has not, or ``""``."""
         tops = [name.split(".")[0] for name in imported(tree)]
         absent = [top for top in tops if top not in IN_THE_PAGE and top not in sys.stdlib_module_names]
-        absent += [self.names[name] for name in sorted(needed_before(tree.body, set()) & set(self.names))]
+        absent += [self.names[name] for name in sorted(used(tree) & set(self.names))]
         for name in bound(tree):
             if absent:
                 self.names[name] = absent[0]

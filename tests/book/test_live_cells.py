@@ -18,6 +18,11 @@ CELLS = [
     ("robot = robots.ur5()", ""),
     ("robot", ""),
     ("np.eye(3)", "yourdfpy"),
+    ("np = 3\nnp", ""),
+    ("for joint in robot:\n    x, y = load(joint)", "yourdfpy"),
+    ("x, y = 1, 2\nprint([joint for joint in range(x)])", ""),
+    ("for y in range(3):\n    print(y)", ""),
+    ("x = x + 1", ""),
 ]
 
 
