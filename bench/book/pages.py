@@ -134,9 +134,15 @@ def seen_by_lighthouse(site: Path, port: int) -> dict[str, Any]:
     return found
 
 
+def npm() -> list[str]:
+    """Return the call of npm: that which came with the Node of the book, where the machine has none."""
+    node = os.environ.get("DHBOOK_NODE")
+    return [node, str(Path(node).parents[1] / "lib/node_modules/npm/bin/npm-cli.js")] if node else ["npm"]
+
+
 def main() -> None:
     """Build what is not built, and open both."""
-    subprocess.run(["npm", "ci", "--no-progress", "--silent"], cwd=WEB, check=True)
+    subprocess.run([*npm(), "ci", "--no-progress", "--silent"], cwd=WEB, check=True)
     rows = []
     with other_hosts() as port:
         for who, lay_out in (("dhlib", books.ours), ("plain", books.plain)):

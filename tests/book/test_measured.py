@@ -48,6 +48,15 @@ def test_every_workload_is_reported() -> None:
     assert set(run.WORKLOADS) <= set(NAMES)
 
 
+@pytest.mark.parametrize("name", run.WORKLOADS)
+def test_every_workload_can_be_set_up(name: str) -> None:
+    work = run.WORKLOADS[name]
+    assert (ROOT / "bench" / work.program).is_file()
+    for peer in work.peers:
+        lock = ROOT / "bench/peers" / f"{work.homes.get(peer, peer)}.lock"
+        assert "--hash=sha256:" in lock.read_text("utf-8")
+
+
 def test_every_workload_has_its_place_on_the_page() -> None:
     assert re.findall(r"\{dh-measured\} (\w+)", (ROOT / "book/how_fast.md").read_text("utf-8")) == NAMES
 
