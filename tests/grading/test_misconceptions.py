@@ -12,7 +12,7 @@ from dhlib.grading.diagnosis import Case, Tally, as_row, cases, other_chains, re
 from dhlib.grading.forms import Choice, Valued
 from dhlib.grading.marking import mark
 from dhlib.grading.marks import Mark
-from dhlib.grading.misconceptions import KNOWN
+from dhlib.grading.misconceptions import KNOWN, told_frames
 from dhlib.grading.sections import CHAPTERS
 
 #: At least this share of wrong answers is named exactly, over all parts. The rest cannot be told apart: a link matrix
@@ -166,3 +166,11 @@ def test_every_sentence_points_into_the_book(every):
     assert {part.section for part in every.parts} <= labels
     keys = {trap.key for part in every.parts for trap in part.traps}
     assert keys <= {*KNOWN, "trap"}
+
+
+@pytest.mark.parametrize(("asked", "words"), [("classic", "frame i stands on axis i."), ("modified", "on axis i + 1.")])
+def test_frames_of_the_other_convention_are_said_to_stand_on_its_axes(asked, words):
+    """A modified frame i stands on axis i, a classic one on axis i + 1: what is told is of the other one."""
+    slip, _ = next(iter(told_frames(robots.quickshot(), asked)))
+    assert slip.misconception.key == "convention"
+    assert words in slip.says
