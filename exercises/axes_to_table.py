@@ -1,6 +1,7 @@
 """What the exercise on the way from axes to a table asks, and how it is marked."""
 
 from dataclasses import dataclass
+from functools import cache
 from itertools import permutations
 
 import numpy as np
@@ -191,16 +192,24 @@ def draw(lots):
 
 
 def figure(given):
-    """The axes of K, where the page has them."""
-    size = max(given.hand_at)
+    """The axes of K in the directions that the page has, but for their distances."""
+    return outline(given.axes[3][1], given.axes[4][1])
+
+
+@cache
+def outline(fourth, fifth):
+    """The axes of an arm like K, drawn once for all in which axes 4 and 5 slope like this."""
+    first, second, third, (point, _), _ = DEFAULT.axes
+    beyond = moved(point, (150, fourth), (30, (0, 1, 0)))
+    size = 550
     scene = Scene(axis_length=0.2 * size)
     scene.add_frame(np.eye(4), "0")
-    for i, (point, along) in enumerate(given.axes, 1):
-        add_axis(scene, point, along, f"axis {i}", 0.12 * size, 0.28 * size)
-        scene.add_point(point)
-    scene.add_point(given.hand_at, "O_5")
+    for i, (at, along) in enumerate((first, second, third, (point, fourth), (beyond, fifth)), 1):
+        add_axis(scene, at, along, f"axis {i}", 0.12 * size, 0.28 * size)
+        scene.add_point(at)
+    scene.add_point(moved(beyond, (100, fifth)), "O_5")
     return scene.sketch(
-        "The joint axes of K at its zero pose, the points that they are given by, O5, and the world",
+        "The joint axes of K at its zero pose, not to scale, the points that they are given by, O5, and the world",
         "Five lines with arrows, and the world frame at the foot of axis 1, which points up. Axis 2 points to the left "
         "and axis 3, above it, to the right. Axis 4 meets axis 3 and slopes upwards and forward. Axis 5 slopes "
         "forward too, and passes axis 4 at a distance. O5 lies on it.",

@@ -1,6 +1,7 @@
 """What the exercise on converting between the conventions asks, and how it is marked."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -114,10 +115,16 @@ def draw(lots):
 
 
 def figure(given):
-    """Arm W, as its table has it."""
+    """Arm W, as its table has it, but for its lengths."""
+    return outline(given.w_turn, given.w_alpha)
+
+
+@cache
+def outline(turn, twists):
+    """An arm like W, drawn once for all that have these angles."""
     return described(
-        given.W,
-        "Arm W with joint 3 pushed out and all angles zero: its joint axes, and its frame {0}",
+        replace(DEFAULT, w_turn=turn, w_alpha=twists).W,
+        "Arm W, joint 3 pushed out and all angles zero, not to scale: its joint axes, and its frame {0}",
         "Arm W: axis 1 is vertical. A link of the table leads from each of the four axes to the next. Joint 3 slides, "
         "and is drawn as a block; the gripper is behind axis 4. Only frame 0 is drawn.",
         q=(0, 0, 90, 0),
