@@ -31,7 +31,8 @@ ICON = "icons/icon.svg"
 PICTURES = (("icon-192.png", 192, 1.0), ("icon-512.png", 512, 1.0), ("icon-masked-512.png", 512, 0.7))
 
 PAGES = ("*.html", "book/**/*", "exercises/**/*", "solutions/**/*")
-KEPT = (*PAGES, "*.js", MANIFEST, "_static/**/*", "_images/**/*", "live/*", "icons/*")
+SCRIPTS = ("run/cells.js", "run/exercise.js", "run/progress.js")
+KEPT = (*PAGES, *SCRIPTS, "*.js", MANIFEST, "_static/**/*", "_images/**/*", "live/*", "icons/*")
 LARGEST = 1_000_000
 """Files beyond this many bytes are kept only when they were used."""
 DESCRIPTION = 155
