@@ -31,7 +31,7 @@ pytestmark = pytest.mark.book
 MARKER = "MARKER-7f3a"
 SHOWN = sorted(path.stem for path in Path(__file__).parents[2].glob("solutions/*.ipynb"))
 #: Chapters explain: what is right stands there, too.
-CHAPTER = re.compile(r"book/|notebooks/\w+\.ipynb")
+ELSEWHERE = re.compile(r"book/|notebooks/\w+\.ipynb|run/(pyodide|numpy|sympy|mpmath|mathjax)")
 #: With its chapters the edition takes minutes.
 WHOLE = bool(os.environ.get("DHBOOK_FULL"))
 
@@ -162,6 +162,19 @@ def test_what_a_course_may_not_see_would_be_found(site_of_course: Path, stray: s
     assert beyond_a_course({*files_of(site_of_course), stray}, sources) == {stray}
 
 
+@pytest.fixture(scope="module")
+def told(site_of_course: Path) -> str:
+    """What the files of the site say, but for chapters and what others have written."""
+    return b"\n".join(
+        data
+        for path in site_of_course.rglob("*")
+        if path.is_file()
+        and path.suffix in {".html", ".js", ".json", ".ipynb", ".whl", ".zip"}
+        and not ELSEWHERE.match(path.relative_to(site_of_course).as_posix())
+        for _, data in contents_of(path)
+    ).decode("utf-8", "replace")
+
+
 def words(exercise: Exercise, file: Path) -> set[str]:
     """What the file of an exercise says of answers, right and wrong, and no page should say of itself."""
     said = {trap.says for part in exercise.parts for trap in part.traps}
@@ -189,18 +202,10 @@ def answers(exercise: Exercise, notebook: Path) -> set[str]:
 
 
 @pytest.mark.parametrize("name", SHOWN)
-def test_no_reference_is_in_any_file_of_the_site(site_of_course: Path, root: Path, name: str) -> None:
+def test_no_reference_is_in_any_file_of_the_site(site_of_course: Path, told: str, root: Path, name: str) -> None:
     """What says which answers are right: the files of the exercises, their sentences, and the right numbers."""
     assert [path for path in site_of_course.rglob(f"{name}.py") if path.parent.name != "dhlib"] == []
     exercise = load_exercise(name, root / "exercises")
-    told = b"\n".join(
-        data
-        for path in site_of_course.rglob("*")
-        if path.is_file()
-        and path.suffix in {".html", ".js", ".json", ".ipynb", ".whl", ".zip"}
-        and not CHAPTER.match(path.relative_to(site_of_course).as_posix())
-        for _, data in contents_of(path)
-    ).decode("utf-8", "replace")
     forms = (str, lambda text: json.dumps(text)[1:-1], html.escape)
     said = words(exercise, root / "exercises" / f"{name}.py")
     assert len(said) > 4
