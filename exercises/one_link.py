@@ -73,7 +73,7 @@ def draw(lots):
         twist=lots.one("twist", [-0.95, -0.7, -0.6, 0.55, 0.65, 0.9]),
         aside=lots.one("aside", [22, 24, 26, 28, 31, 33]),
         lean=lots.one("lean", [0.16, 0.18, 0.22, 0.24, 0.26, 0.28]),
-        wrong=lots.one("wrong", [0, 1, 2, 3]),
+        wrong=lots.one("wrong", [0, 1, 2]),
         order=lots.one("order", orders),
     )
 
