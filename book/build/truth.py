@@ -87,6 +87,8 @@ class _Figures(HTMLParser):
         super().__init__()
         self.silent: list[str] = []
         self.drawings = 0  # open <svg>: what is drawn within a drawing is spoken for by the outer one
+        self.unnamed = ""  # the outer drawing, while nothing has said what it shows
+        self.describing = False
 
     def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.handle_starttag(tag, attrs)
@@ -94,6 +96,14 @@ class _Figures(HTMLParser):
 
     def handle_endtag(self, tag: str) -> None:
         self.drawings -= tag == "svg"
+        if tag == "svg" and not self.drawings and self.unnamed:
+            self.silent.append(self.unnamed)
+            self.unnamed = ""
+        self.describing = False
+
+    def handle_data(self, data: str) -> None:
+        if self.describing and data.strip():
+            self.unnamed = ""
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         named = dict(attrs)
@@ -102,14 +112,18 @@ class _Figures(HTMLParser):
         looks_generated = re.fullmatch(r"(\.\./)*(_images/)?[0-9a-f]{32,}\S*|\S+\.(png|svg|jpe?g)", words)
         inner = self.drawings > 0
         self.drawings += tag == "svg"
+        self.describing = tag == "desc" and self.drawings == 1
         if tag in {"img", "svg", "canvas"} and not inner and not decoration and (not words or looks_generated):
-            self.silent.append(self.get_starttag_text() or tag)
+            if tag == "svg":
+                self.unnamed = self.get_starttag_text() or tag
+            else:
+                self.silent.append(self.get_starttag_text() or tag)
 
 
 def silent_figures(page: str) -> list[str]:
     """Return the start tags of images and drawings of an HTML page that have no words: no alt text, or a file's name.
 
-    Decoration that is marked ``aria-hidden`` passes.
+    A drawing may say in its ``<desc>`` what it shows. Decoration that is marked ``aria-hidden`` passes.
     """
     parser = _Figures()
     parser.feed(page)

@@ -81,5 +81,5 @@ def leave_out(_app: Sphinx, doctree: nodes.document) -> None:
 def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
     app.add_directive("dh-measured", MeasuredDirective)
-    app.connect("doctree-read", leave_out)
+    app.connect("doctree-read", leave_out, priority=400)  # before the contents of the page are read
     return {"parallel_read_safe": True, "parallel_write_safe": True}

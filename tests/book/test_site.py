@@ -52,6 +52,8 @@ def test_every_figure_has_words(site: Path) -> None:
         '<img alt="frames.svg" src="frames.svg"/>',
         '<svg viewBox="0 0 1 1"><path/></svg>',
         '<svg aria-hidden="true"><svg/></svg><svg><path/></svg>',
+        "<svg><title>A name alone</title><desc> </desc><path/></svg>",
+        "<svg><g><svg><desc>Within</desc></svg></g></svg>",
     ],
 )
 def test_a_silent_figure_would_be_found(figure: str) -> None:
@@ -62,6 +64,7 @@ def test_a_speaking_figure_passes() -> None:
     assert not silent_figures(
         '<img alt="Two frames" src="a.png"><svg aria-label="Two frames"></svg><svg aria-hidden="true"/>'
         '<svg aria-hidden="true"><svg viewBox="0 0 1 1"><path/></svg></svg>'
+        "<svg><title>A link</title><desc>Two frames</desc><path/></svg>"
     )
 
 
