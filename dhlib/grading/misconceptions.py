@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import islice, pairwise, permutations
+from itertools import pairwise, permutations
 from typing import Any
 
 import numpy as np
@@ -335,10 +335,15 @@ def retold(chain_at: Callable[..., Chain], quantity: Quantity, example: Probe) -
         Any probe: which retellings there are must not depend on it.
     """
 
-    def told(k: int) -> Quantity:
-        return lambda _, *probe: quantity(next(islice(retellings(chain_at(*probe)), k, None))[2], *probe)
+    @lru_cache(maxsize=64)
+    def at(*probe: Any) -> list[tuple[str, str, Any]]:
+        # Each trap asks for one of them, at each probe: made anew for each, they would take seconds a part.
+        return list(retellings(chain_at(*probe)))
 
-    return [Trap(says, told(k), key) for k, (key, says, _) in enumerate(retellings(chain_at(*example)))]
+    def told(k: int) -> Quantity:
+        return lambda _, *probe: quantity(at(*probe)[k][2], *probe)
+
+    return [Trap(says, told(k), key) for k, (key, says, _) in enumerate(at(*example))]
 
 
 def finishings(values: FloatArray) -> Iterator[tuple[str, str, FloatArray]]:

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from sampling import some
 
@@ -194,8 +195,9 @@ def cells(chapter: str) -> list[str]:
 def run(chapter: str) -> None:
     """Run the code of a chapter."""
     names: dict[str, Any] = {}
-    for code in cells(chapter):
-        exec(compile(code, "<chapter>", "exec"), names)
+    with np.printoptions():  # chapters set their own
+        for code in cells(chapter):
+            exec(compile(code, "<chapter>", "exec"), names)
 
 
 @pytest.mark.parametrize("chapter", CHANGES)

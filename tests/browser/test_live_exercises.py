@@ -107,7 +107,7 @@ def test_progress_goes_to_another_browser_as_a_file(browser: Any, page: Any, add
     assert other.locator(".dh-progress tbody").inner_text() != points
     (tmp_path / "other.json").write_text('{"format": "something"}', "utf-8")
     other.set_input_files(".dh-file", tmp_path / "other.json")
-    assert "no progress of this book" in other.locator(".dh-progress [role=status]").inner_text()
+    other.locator(".dh-progress [role=status]", has_text="no progress of this book").wait_for()
     other.set_input_files(".dh-file", path)
     other.wait_for_function("() => document.querySelector('.dh-progress [role=status]').textContent.includes('taken')")
     assert other.locator(".dh-progress tbody").inner_text() == points
