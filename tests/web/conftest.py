@@ -62,8 +62,8 @@ Six axes to place frames on.
 
 def lay_out(folder: Path, text: str) -> Path:
     """Lay out a book of one page in a folder, with the extensions and scripts of the book."""
-    ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints")
-    for name in ("dhlib", "book", "requirements"):
+    ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "node_modules")
+    for name in ("dhlib", "book", "requirements", "bench"):
         shutil.copytree(ROOT / name, folder / name, ignore=ignore)
     for name in ("_config.yml", "package-lock.json"):
         shutil.copy(ROOT / name, folder)
