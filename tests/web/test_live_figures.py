@@ -32,7 +32,7 @@ THREE_MINUTES = 180_000
 def wake(page: Any) -> None:
     """Scroll past every figure, so that what loads late loads."""
     for figure in EVERY:
-        page.locator(figure).evaluate("figure => figure.scrollIntoView()")
+        page.locator(figure).evaluate("figure => figure.scrollIntoView({behavior: 'instant'})")
         drawn(page)
     awake = "[...document.querySelectorAll('dh-robot')].every(r => r.space || !r.canvas.isConnected)"
     page.wait_for_function(awake, timeout=THREE_MINUTES)
