@@ -8,14 +8,15 @@ import subprocess
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
-import chromium
 import pytest
+from browsers import browser, pytest_runtest_protocol
 from building import build_book
 from filelock import FileLock
 from hypothesis import settings
 from serve import server
+
+__all__ = ["browser", "pytest_runtest_protocol"]
 
 ROOT = Path(__file__).parent.parent
 
@@ -108,22 +109,3 @@ def copy_sources(copy: Path) -> Path:
         if (ROOT / name).exists():
             (copy / name).symlink_to(ROOT / name)
     return copy
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
-    """Chromium, without a window; skipped where there is none, and a failure in CI."""
-    path = chromium.find()
-    if path is None:
-        if chromium.in_ci():
-            pytest.fail(f"No Chromium, and CI must not skip. {chromium.ADVICE}")
-        pytest.skip(f"no Chromium. {chromium.ADVICE}")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(
-            executable_path=path,
-            args=["--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-background-networking"],
-        )
-        yield started
-        started.close()
