@@ -13,6 +13,7 @@ from pathlib import Path
 import nbclient
 import nbformat
 import pytest
+from sampling import some
 
 from dhlib.grading.answers import read_answer
 from dhlib.grading.check import Checker, CheckFailed, tell
@@ -23,6 +24,7 @@ from dhlib.grading.marking import Marker, agree
 from dhlib.grading.misconceptions import would_have_given
 
 ROOT = Path(__file__).parents[2]
+NAMES = sorted(path.stem for path in (ROOT / "solutions").glob("*.ipynb"))
 
 
 def load(path):
@@ -316,24 +318,32 @@ def test_the_hand_ins_are_what_they_are_meant_to_be(notebooks):
     assert sum(len(answers) for answers in HANDED_IN) >= 40
 
 
-@pytest.mark.notebooks
-def test_the_solution_gets_full_marks_by_every_face(every, worked, tmp_path):
-    solution = ROOT / "solutions" / f"{every.name}.ipynb"
-    result = grade_notebook(solution)
+def test_the_solution_gets_full_marks(every):
+    result = grade_notebook(ROOT / "solutions" / f"{every.name}.ipynb")
     assert (result.status, result.points, result.out_of) == ("graded", every.points, every.points)
+
+
+@pytest.mark.notebooks
+@pytest.mark.parametrize("some_name", some(NAMES, 4, "solutions"))
+def test_the_solution_gets_full_marks_by_every_face(some_name, tmp_path):
+    exercise, solution = load_exercise(some_name, ROOT / "exercises"), ROOT / "solutions" / f"{some_name}.ipynb"
     cases, _ = pytest_on(tmp_path, "--nbval", str(solution))  # all stored outputs compared
     assert [case.get("name") for case in cases if len(case)] == []
-    assert len(cases) == sum(cell["cell_type"] == "code" for cell in worked["cells"])
+    assert len(cases) == sum(cell["cell_type"] == "code" for cell in load(solution)["cells"])
     cases, said = pytest_on(tmp_path, "--dh-grade", str(solution))
-    assert len(cases) == len(every.parts)
-    assert f"{len(every.parts)} passed" in said
-    assert f"solutions/{every.name}.ipynb: {every.points:g} of {every.points:g} points" in said
+    assert len(cases) == len(exercise.parts)
+    assert f"{len(exercise.parts)} passed" in said
+    assert f"solutions/{some_name}.ipynb: {exercise.points:g} of {exercise.points:g} points" in said
+
+
+def test_the_untouched_exercise_gets_none(name):
+    assert grade_notebook(ROOT / "exercises" / f"{name}.ipynb").points == 0
 
 
 @pytest.mark.notebooks
-def test_the_untouched_exercise_gets_none_by_any_face(name, tmp_path):
-    pristine = ROOT / "exercises" / f"{name}.ipynb"
-    assert grade_notebook(pristine).points == 0
+@pytest.mark.parametrize("some_name", some(NAMES, 4, "untouched"))
+def test_the_untouched_exercise_gets_none_by_any_face(some_name, tmp_path):
+    pristine = ROOT / "exercises" / f"{some_name}.ipynb"
     assert not any(by_nbval(pristine, tmp_path).values())
     assert not any(passed for passed, _, _ in by_pytest(pristine, tmp_path).values())
 
