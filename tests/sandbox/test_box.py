@@ -1,5 +1,6 @@
 """The box itself: what is seen in it, how it starts anew, and what holds where a machine has less to offer."""
 
+import io
 import os
 import shutil
 import signal
@@ -11,7 +12,7 @@ import pytest
 
 from dhlib.errors import DHError
 from dhlib.grading.notebook import Cell
-from dhlib.grading.wall import Limits, Sandbox, outer, sandbox, view
+from dhlib.grading.wall import Limits, Sandbox, doctor, outer, sandbox, view
 from dhlib.grading.wall.sandbox import STARVED, descendants
 
 REQUESTS = {"A": {"form": "numbers", "shape": []}}
@@ -59,20 +60,49 @@ def test_the_sum_of_memory_is_watched_where_no_control_group_does(walls, monkeyp
         assert value(sandbox_.run(cells("A = 1"), REQUESTS)) == [1.0]
 
 
+#: Root as in a container: it may change users, and not mount.
+LESS_THAN_ROOT = ("setpriv", "--bounding-set", "-sys_admin", sys.executable)
+
+
+@pytest.fixture
+def less_than_root(walls):
+    """Runs Python as root without the right to build walls by itself."""
+    if os.geteuid() or not shutil.which("setpriv"):
+        pytest.skip("not root, or no setpriv")
+    return lambda *words: subprocess.run([*LESS_THAN_ROOT, *words], capture_output=True, text=True, check=False)
+
+
 @pytest.mark.sandbox
-def test_who_has_not_the_rights_of_root_has_the_same_walls(walls):
-    """Walls are then built by way of a user namespace, as for any user."""
-    command = [sys.executable, "-m", "dhlib.cli", "grade", "--doctor"]
-    if os.geteuid() == 0:
-        if not shutil.which("setpriv"):
-            pytest.skip("no setpriv")
-        command = ["setpriv", "--bounding-set", "-sys_admin", *command]
-        code = "from dhlib.grading.wall.outer import find_outer; print(find_outer().user)"
-        said = subprocess.run([*command[:4], "-c", code], capture_output=True, text=True, check=True)
-        assert said.stdout.strip() == "0"
-    said = subprocess.run(command, capture_output=True, text=True, check=False)
+def test_who_has_not_the_rights_of_root_has_the_same_walls(less_than_root):
+    said = less_than_root("-m", "dhlib.cli", "grade", "--doctor")
     assert said.returncode == 0, said.stdout + said.stderr
     assert "✘" not in said.stdout
+
+
+@pytest.mark.sandbox
+def test_root_without_its_rights_becomes_root_of_a_namespace_and_nobody_in_the_box(less_than_root):
+    """As itself it would meet no limit of processes: the kernel holds none for the machine's root."""
+    tried = less_than_root(
+        "-c",
+        "from dhlib.grading.wall import outer\n"
+        "print(outer.find_outer().user)\n"
+        "for how in (outer.AS_ROOT, outer.AS_OWN_ROOT, outer.AS_ANYBODY): print(outer._why_not_bubblewrap(how))",
+    )
+    user, as_root, as_own_root, as_anybody = tried.stdout.splitlines()
+    assert user == "65534"
+    assert "does not run here" in as_root
+    assert as_own_root == ""
+    assert as_anybody.startswith(outer.UNBOUNDED)
+
+
+@pytest.mark.sandbox
+def test_walls_that_anybody_may_build_hold_as_well(walls, monkeypatch):
+    monkeypatch.setattr(sandbox, "find_outer", outer.AS_ANYBODY.outer)
+    if os.geteuid() == 0:  # which is why root does not build them this way
+        held = [probe for probe in doctor.PROBES if probe.wall != "processes are bounded"]
+        monkeypatch.setattr(doctor, "PROBES", held)
+    said = io.StringIO()
+    assert doctor.look(said), said.getvalue()
 
 
 def test_what_says_what_is_right_is_not_in_view(tmp_path, monkeypatch):

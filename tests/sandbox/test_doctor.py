@@ -1,6 +1,7 @@
 """``dhlib grade --doctor``: all that should fail fails behind the walls, and does not without them."""
 
 import io
+from dataclasses import replace
 
 import pytest
 
@@ -42,6 +43,19 @@ def test_the_same_probes_come_through_where_there_is_no_wall(monkeypatch):
     with Sandbox(Limits.of(60), unsafe=True) as sandbox:
         found = {wall: held for wall, held, _ in doctor.probe(sandbox)}
     assert [wall for wall in HARMLESS_WITHOUT_WALLS if found[wall]] == []
+
+
+@pytest.mark.sandbox
+def test_what_only_ran_out_of_time_or_met_no_limit_is_not_called_stopped(walls, monkeypatch):
+    """Negative control: a limit of processes that is too wide, and an attack that gets nowhere and is not refused."""
+    bounded = next(probe for probe in doctor.PROBES if probe.wall == "processes are bounded")
+    slow = doctor.Probe("slow", "while True: pass")
+    monkeypatch.setattr(doctor, "PROBES", (bounded, slow, replace(slow, wall="time", endless=True)))
+    with Sandbox(replace(doctor.LIMITS, processes=3 * doctor.LIMITS.processes, cell_seconds=2.0)) as sandbox:
+        found = {wall: (held, says) for wall, held, says in doctor.probe(sandbox)}
+    assert found["processes are bounded"] == (False, "it came through ({'values': [1.0]})")
+    assert found["slow"] == (False, doctor.LATE)
+    assert found["time"] == (True, "")
 
 
 def test_a_machine_without_walls_is_told_what_to_install(monkeypatch):

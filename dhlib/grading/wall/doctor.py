@@ -18,13 +18,15 @@ from typing import TextIO
 from dhlib.errors import DHError
 from dhlib.grading.notebook import Cell
 from dhlib.grading.wall.limits import MIB, Limits, Outcome
-from dhlib.grading.wall.sandbox import Sandbox
+from dhlib.grading.wall.sandbox import HOW, Sandbox, processes_that_count
+from dhlib.grading.wall.shell import OutOfTime
 
 LIMITS = Limits(cell_seconds=3.0, notebook_seconds=8.0, memory=256 * MIB)
 #: Readings of a cell that did not come to its end.
-STOPPED = ("missing", "undefined", "skipped", "timeout")
+STOPPED = ("missing", "undefined", "skipped")
 REQUEST = {"A": {"form": "numbers", "shape": []}}
 HARMLESS = "A = 1 + 1"
+LATE = "its time ended before anything stopped it, perhaps since the machine is busy: try again"
 
 
 @dataclass(frozen=True)
@@ -37,10 +39,13 @@ class Probe:
         What should stop it, in words.
     source : str
         A cell that tries; it sets A to 1 where it succeeds. Names in braces are filled in from outside.
+    endless : bool
+        Whether the end of its time is what should stop it. For any other it shows nothing.
     """
 
     wall: str
     source: str
+    endless: bool = False
 
 
 PROBES = (
@@ -72,22 +77,23 @@ A = int(ctypes.CDLL(None).unshare(0x10000000) == 0)"""),
     Probe("no other identity than nobody's", "import os; A = int(os.getuid() != 65534)"),
     Probe("memory is bounded", "import numpy; A = int(numpy.ones(3 * {memory} // 8)[0])"),
     Probe("processes are bounded", """
-import os, time
+import threading, time
+threading.stack_size(1 << 16)
 made = 0
 try:
-    for _ in range(1000):
-        if os.fork() == 0:
-            time.sleep(1); os._exit(0)
+    while made < {processes}:
+        threading.Thread(target=time.sleep, args=(1,), daemon=True).start()
         made += 1
-except OSError:
+except RuntimeError:
     pass
-A = int(made >= 1000)"""),
+A = int(made >= {processes})
+time.sleep(1.2)"""),
     Probe("files are bounded", "open('/tmp/x', 'wb').write(bytes(2 * {disk})); A = 1"),
     Probe("time is bounded, whatever is swallowed", """
 while True:
     try:
         while True: pass
-    except BaseException: pass"""),
+    except BaseException: pass""", endless=True),
 )  # fmt: skip
 
 
@@ -139,12 +145,20 @@ def probe(sandbox: Sandbox) -> Iterator[tuple[str, bool, str]]:
             reading = outcome.readings.get("A", {"fault": "missing"})
             if seconds > LIMITS.notebook_seconds + 1:
                 yield trial.wall, False, f"it took {seconds:.1f} s"
+            elif _out_of_time(outcome) and not trial.endless:
+                yield trial.wall, False, LATE
             elif reading == {"values": [0.0]} or reading.get("fault") in STOPPED:
                 yield trial.wall, True, ""
             else:
                 yield trial.wall, False, f"it came through ({reading})"
         after, _ = _run(sandbox, HARMLESS)
         yield "the next notebook is as well off as the first", after.readings.get("A") == {"values": [2.0]}, after.note
+
+
+def _out_of_time(outcome: Outcome) -> bool:
+    return HOW["time"] in outcome.killers.values() or any(
+        OutOfTime.__name__ in said for said in outcome.errors.values()
+    )
 
 
 def _run(sandbox: Sandbox, source: str) -> tuple[Outcome, float]:
@@ -178,6 +192,7 @@ def _planted() -> Iterator[dict[str, object]]:
             "pid": victim.pid,
             "memory": LIMITS.memory + (512 << 20),
             "disk": LIMITS.disk_bytes,
+            "processes": LIMITS.processes + processes_that_count() + 1,
         }
 
 

@@ -16,11 +16,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from dhlib.errors import DHError
+from dhlib.grading.wall import inner
 from dhlib.grading.wall.inner import HOME, NOBODY
 from dhlib.grading.wall.view import DEVICES, View, view
 
 SERVER = "dhlib.grading.wall.server"
 PROBE_SECONDS = 30.0
+UNBOUNDED = "No limit of processes holds for root here."
 
 WITHOUT = "--unsafe-no-sandbox grades without it, which is for your own notebooks only."
 REMEDY = (
@@ -94,6 +96,40 @@ def bubblewrap(seen: View, root: bool) -> list[str]:
     return [*words, "--proc", "/proc", "--remount-ro", "/", "--chdir", HOME, "--"]
 
 
+def as_own_root(command: list[str]) -> list[str]:
+    """The command, started by root of a namespace of its own."""
+    code = f"import os, sys; sys.path.append({str(Path(inner.__file__).parent)!r}); import inner; "
+    return [sys.executable, "-I", "-S", "-c", f"{code}inner.own_root(); os.execvp(sys.argv[1], sys.argv[1:])", *command]
+
+
+@dataclass(frozen=True)
+class Way:
+    """A way to start bubblewrap.
+
+    Parameters
+    ----------
+    started : callable
+        The command to the command that starts it.
+    root : bool
+        Whether it is root there.
+    """
+
+    started: Callable[[list[str]], list[str]]
+    root: bool
+
+    def outer(self) -> Outer:
+        """The wall that is built this way."""
+        user = NOBODY if self.root else 0
+        return Outer("bubblewrap", lambda seen: self.command(seen, start_python(seen)), user)
+
+    def command(self, seen: View, program: list[str]) -> list[str]:
+        """Start a program behind the wall."""
+        return self.started([*bubblewrap(seen, self.root), *program])
+
+
+AS_ROOT, AS_OWN_ROOT, AS_ANYBODY = Way(list, True), Way(as_own_root, True), Way(list, False)
+
+
 @functools.cache
 def find_outer() -> Outer:
     """The best outer wall that stands on this machine; tried once.
@@ -105,28 +141,25 @@ def find_outer() -> Outer:
     """
     if sys.platform != "linux":
         raise DHError(REMEDY.format(why="bubblewrap is for Linux: here, run dhlib in a container."))
-    # In a container root may lack the right to build walls by itself; then it builds them as anybody does.
-    for root in (True, False) if os.geteuid() == 0 else (False,):
-        why = _why_not_bubblewrap(root)
+    # In a container root lacks the right to build walls by itself. It may have it in a namespace of its own, and else
+    # it builds them as anybody does.
+    for way in (AS_ROOT, AS_OWN_ROOT, AS_ANYBODY) if os.geteuid() == 0 else (AS_ANYBODY,):
+        why = _why_not_bubblewrap(way)
         if not why:
-            return Outer(
-                "bubblewrap",
-                lambda seen, root=root: [*bubblewrap(seen, root), *start_python(seen)],  # type: ignore[misc]
-                NOBODY if root else 0,
-            )
+            return way.outer()
     raise DHError(REMEDY.format(why=why))
 
 
-def _why_not_bubblewrap(root: bool) -> str:
+def _why_not_bubblewrap(way: Way) -> str:
     """Empty if bubblewrap really runs here and namespaces can be made within it, else what is in the way."""
     if not shutil.which("bwrap"):
         return "bubblewrap is not installed."
     seen = view()
     code = f"import sys; sys.path[:] = {seen.path!r}; from dhlib.grading.wall import inner; "
-    code += f"inner.become({NOBODY if root else 0}); inner.own_spaces()"
+    code += f"inner.become({way.outer().user}); inner.own_spaces(); inner.bounded() or sys.exit({UNBOUNDED!r})"
     try:
         tried = subprocess.run(
-            [*bubblewrap(seen, root), seen.python, "-I", "-S", "-c", code],
+            way.command(seen, [seen.python, "-I", "-S", "-c", code]),
             stdin=subprocess.DEVNULL,
             capture_output=True,
             timeout=PROBE_SECONDS,
@@ -137,6 +170,8 @@ def _why_not_bubblewrap(root: bool) -> str:
     if tried.returncode == 0:
         return ""
     said = tried.stderr.decode(errors="replace").strip().splitlines()
+    if said and said[-1] == UNBOUNDED:
+        return f"{UNBOUNDED} Run dhlib as an ordinary user; in a container, with --user 1000:1000."
     return f"bubblewrap is installed and does not run here ({said[-1] if said else tried.returncode}). {_blocked()}"
 
 

@@ -166,7 +166,7 @@ class Box:
         self.group = ControlGroup(limits)
         self.control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.jobs = 0
-        self.others = _processes_that_count()
+        self.others = processes_that_count()
         said = tempfile.TemporaryFile()  # noqa: SIM115
         self.process = subprocess.Popen(
             [*_going_in(self.group), *outer.command(view())],
@@ -361,7 +361,7 @@ def _going_in(group: ControlGroup) -> list[str]:
     return [shell, "-c", f'{"; ".join(steps)}; exec "$@"', "sh"]
 
 
-def _processes_that_count() -> int:
+def processes_that_count() -> int:
     """How many processes of this user count against the limit behind the wall: none where namespaces count alone."""
     release = os.uname().release.split(".")
     with contextlib.suppress(ValueError, IndexError):
