@@ -28,7 +28,7 @@ class NotToBeHad(Exception):
 
 
 def python_of(peer: str) -> Path:
-    """Return the Python of a peer's environment, made if its lock is new.
+    """Return the Python of a peer's environment, made if its lock is new, or if the repository was moved.
 
     Raises
     ------
@@ -38,7 +38,8 @@ def python_of(peer: str) -> Path:
     lock = BENCH / "peers" / f"{peer}.lock"
     home = ENVIRONMENTS / peer
     python = home / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-    ready = home / f"ready-{zlib.crc32(lock.read_bytes()):08x}"
+    # The commands of an environment name the folder that they were installed in.
+    ready = home / f"ready-{zlib.crc32(lock.read_bytes() + bytes(home)):08x}"
     if ready.exists():
         return python
     for words in (
