@@ -49,9 +49,7 @@ STYLE = """
   .book-contents li { display: flex; gap: 0.5em; margin: 0.15em 0; }
   .book-contents li::before { content: ""; order: 1; flex: 1; border-bottom: 1px dotted #999; margin-bottom: 0.3em; }
   .book-contents .number { order: 2; }
-  .headerlink, button.copybtn, .toggle-button, script { display: none !important; }
-  details > summary { list-style: none; }
-  details.hide > summary, .citation > .backrefs { display: none; }
+  script, .citation > .backrefs { display: none !important; }
   .citation > .label { float: left; margin-right: 0.6em; }
   .citation > p { margin: 0 0 0.4em; }
   .dh-answer input { border: 0 !important; border-bottom: 1px solid #666 !important; border-radius: 0 !important; }
@@ -147,7 +145,14 @@ def join(site: Path, pages: list[str], numbers: dict[str, int]) -> str:
     )
     sheets = "".join(
         f'<link rel="stylesheet" href="{path.as_uri()}">'
-        for name in ("styles/pydata-sphinx-theme.css", "pygments.css", "colours.css", "book.css", "questions.css")
+        for name in (
+            "styles/pydata-sphinx-theme.css",
+            "pygments.css",
+            "colours.css",
+            "book.css",
+            "questions.css",
+            "print.css",
+        )
         if (path := (site / "_static" / name).resolve()).exists()
     ) + "".join(
         f'<link rel="stylesheet" href="{p.resolve().as_uri()}">' for p in (site / "_static").glob("mystnb.*.css")
