@@ -13,7 +13,7 @@ import pytest
 from dhlib.errors import DHError
 from dhlib.grading.notebook import Cell
 from dhlib.grading.wall import Limits, Sandbox, doctor, outer, sandbox, view
-from dhlib.grading.wall.sandbox import STARVED, descendants
+from dhlib.grading.wall.sandbox import HOW, STARVED, descendants
 
 REQUESTS = {"A": {"form": "numbers", "shape": []}}
 
@@ -48,16 +48,42 @@ def test_nothing_is_left_when_a_sandbox_is_closed():
     assert not any(folder.exists() for folder in folders)
 
 
+GREEDY = {
+    "children": "import os, time\nfor _ in range(8):\n    if os.fork() == 0:\n"
+    "        kept = bytearray(b'x' * 120_000_000); time.sleep(60); os._exit(0)\ntime.sleep(60)",
+    "shared": "import mmap, time\nkept = []\nfor _ in range(80):\n"
+    "    m = mmap.mmap(-1, 100_000_000); m.write(bytes(100_000_000)); kept.append(m); time.sleep(0.02)",
+}
+
+
 @pytest.mark.sandbox
-def test_the_sum_of_memory_is_watched_where_no_control_group_does(walls, monkeypatch):
+@pytest.mark.parametrize("way", GREEDY)
+def test_the_sum_of_memory_is_watched_where_no_control_group_does(walls, monkeypatch, way):
+    """What takes it is ended, and nothing else."""
     monkeypatch.setattr(sandbox.ControlGroup, "_make", lambda *_: False)
-    greedy = (
-        "import os, time\nfor _ in range(8):\n    if os.fork() == 0:\n"
-        "        kept = bytearray(b'x' * 120_000_000); time.sleep(60); os._exit(0)\ntime.sleep(60)\nA = 1"
-    )
+    notebook = [*cells("A = 1"), *cells(f"A = 2\n{GREEDY[way]}\nA = 3"), *cells("A")]
+    with Sandbox(Limits(3.0, 120.0, memory=256 << 20)) as sandbox_:
+        outcome = sandbox_.run(notebook, REQUESTS)
+    assert outcome.note == ""
+    if way == "children":  # the cell that made them goes on, and sleeps too long
+        assert value(outcome) in ([2.0], [1.0])  # by how busy it is here
+        assert {*outcome.errors, *outcome.killers} == {2}
+    else:
+        assert value(outcome) == [1.0]
+        assert outcome.killers == {2: HOW["died"]}
+
+
+@pytest.mark.sandbox
+def test_memory_that_cannot_be_freed_ends_the_notebook(walls, monkeypatch):
+    monkeypatch.setattr(sandbox.ControlGroup, "_make", lambda *_: False)
+    monkeypatch.setattr(sandbox.os, "pidfd_open", refuse)
     with Sandbox(Limits(60.0, 120.0, memory=256 << 20)) as sandbox_:
-        assert sandbox_.run(cells(greedy), REQUESTS).note == STARVED
+        assert sandbox_.run(cells(f"{GREEDY['shared']}\nA = 1"), REQUESTS).note == STARVED
         assert value(sandbox_.run(cells("A = 1"), REQUESTS)) == [1.0]
+
+
+def refuse(*_):
+    raise PermissionError
 
 
 #: Root as in a container: it may change users, and not mount.

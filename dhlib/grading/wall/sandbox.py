@@ -9,11 +9,12 @@ import math
 import os
 import select
 import shutil
+import signal
 import socket
 import subprocess
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
@@ -200,9 +201,42 @@ class Box:
         """Whether the controller has to watch the memory, since no control group does."""
         return not self.group.memory
 
-    def memory(self) -> int:
-        """What all processes behind the wall take together, in bytes; shared pages count once."""
-        return sum(_proportional(pid) for pid in descendants(self.process.pid))
+    def relieve(self, limit: int) -> bool:
+        """End what takes most, as a control group would, until all together take no more bytes; whether that went."""
+        taken = {pid: _proportional(pid) for pid in descendants(self.process.pid)}
+        over = sum(taken.values()) - limit
+        students = set(self._of_the_notebook())
+        for pid in sorted(taken, key=lambda pid: -taken[pid]):
+            if over <= 0:
+                break
+            if pid in students and self._end(pid):
+                over -= taken[pid]
+        return over <= 0
+
+    def _of_the_notebook(self) -> Iterator[int]:
+        """The processes that run the student's code: the server has a keeper, and the keeper has them."""
+        for server in _children(self.process.pid):
+            for keeper in _children(server):
+                yield from descendants(keeper)[1:]
+
+    def _end(self, pid: int) -> bool:
+        """End a process of the notebook; false if it cannot be done. By now another may have its number."""
+        try:
+            handle = os.pidfd_open(pid)
+        except ProcessLookupError:
+            return True
+        except OSError:
+            return False
+        try:
+            if pid in self._of_the_notebook():
+                signal.pidfd_send_signal(handle, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+        except OSError:
+            return False
+        finally:
+            os.close(handle)
+        return True
 
     def close(self) -> None:
         """End it."""
@@ -264,7 +298,7 @@ class Run:
                 raise Crashed
             if now > watch:
                 watch = now + WATCH_SECONDS
-                if self.box.memory() > self.limits.memory + SERVER_MEMORY:
+                if not self.box.relieve(self.limits.memory + SERVER_MEMORY):
                     self._end(STARVED)
             until = min(watch, self.ended + END_SECONDS if self.ended else deadline + GRACE)
             reading = [control.fileno(), *self.heard]
@@ -376,9 +410,15 @@ def descendants(pid: int) -> list[int]:
     while waiting:
         pid = waiting.pop()
         found.append(pid)
-        for children in Path(f"/proc/{pid}/task").glob("*/children"):
-            with contextlib.suppress(OSError):
-                waiting += map(int, children.read_text().split())
+        waiting += _children(pid)
+    return found
+
+
+def _children(pid: int) -> list[int]:
+    found: list[int] = []
+    for children in Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):
+            found += map(int, children.read_text().split())
     return found
 
 
