@@ -31,6 +31,12 @@ REMEDY = (
     f"docker with the Containerfile of the repository. {WITHOUT}"
 )
 
+#: What a container has to be started with, so that walls can be built in it.
+CONTAINER = " ".join(
+    f"--security-opt {option}"
+    for option in ("seccomp=unconfined", "systempaths=unconfined", "apparmor=unconfined", "label=disable")
+)
+
 
 @dataclass(frozen=True)
 class Outer:
@@ -192,4 +198,4 @@ def _blocked() -> str:
                     return f"User namespaces are switched off: as root, {remedy}."
         except OSError:
             continue
-    return "In a container, start it with --security-opt seccomp=unconfined --security-opt systempaths=unconfined."
+    return f"In a container, start it with {CONTAINER}."
