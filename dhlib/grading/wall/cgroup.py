@@ -9,11 +9,13 @@ import contextlib
 import os
 import time
 import uuid
+from collections.abc import Mapping
 from pathlib import Path
 
 from dhlib.grading.wall.limits import Limits
 
 ROOT = Path("/sys/fs/cgroup")
+CONTROLLERS = ("memory", "pids")
 #: What the server itself takes, in bytes and processes.
 SERVER_MEMORY = 512 << 20
 SERVER_PROCESSES = 16
@@ -27,41 +29,73 @@ class ControlGroup:
     Parameters
     ----------
     limits : Limits
+
+    Attributes
+    ----------
+    memory, processes : bool
+        Whether it bounds them. It does when the box is in it: see `holds`.
     """
 
     def __init__(self, limits: Limits) -> None:
         memory, processes = limits.memory + SERVER_MEMORY, limits.processes + SERVER_PROCESSES
         self.folders: list[Path] = []
+        self.memory = self.processes = False
         own = _own_groups()
         name = f"dhlib-{os.getpid()}-{uuid.uuid4().hex[:8]}"
         if "" in own and not ROOT.joinpath("memory").is_dir():
-            self.memory = self.processes = self._make(
-                ROOT / own[""].lstrip("/") / name, {"memory.max": memory, "pids.max": processes}
-            )
+            self._make_unified(ROOT / own[""].lstrip("/"), name, {"memory.max": memory, "pids.max": processes})
         else:
             self.memory = self._make(
-                ROOT / "memory" / own.get("memory", "/").lstrip("/") / name, {"memory.limit_in_bytes": memory}
+                ROOT / "memory" / own.get("memory", "/").lstrip("/") / name,
+                {"memory.limit_in_bytes": memory},
+                {"memory.memsw.limit_in_bytes": memory},
             )
             self.processes = self._make(
                 ROOT / "pids" / own.get("pids", "/").lstrip("/") / name, {"pids.max": processes}
             )
 
-    def _make(self, folder: Path, values: dict[str, int]) -> bool:
-        """Make a group with limits; False if that is not ours to do."""
+    def _make_unified(self, own: Path, name: str, values: dict[str, int]) -> None:
+        """Make a group of version 2 where it has controllers.
+
+        A group that has processes hands no controller on, unless it is the root. So ours seldom fits below our own:
+        then it is made beside it, where whoever manages the groups has given us the one above.
+        """
+        for controller in CONTROLLERS:
+            with contextlib.suppress(OSError):
+                write(own / "cgroup.subtree_control", f"+{controller}")
+        for parent in (own, own.parent) if own != ROOT else (own,):
+            handed = [
+                controller for controller in CONTROLLERS if controller in _words(parent / "cgroup.subtree_control")
+            ]
+            limits = {file: value for file, value in values.items() if file.removesuffix(".max") in handed}
+            if limits and self._make(parent / name, limits, {"memory.swap.max": 0}):
+                self.memory, self.processes = "memory.max" in limits, "pids.max" in limits
+                return
+
+    def _make(self, folder: Path, values: dict[str, int], others: Mapping[str, int] | None = None) -> bool:
+        """Make a group with limits, others where the kernel counts swap; False if that is not ours to do."""
         _remove_left(folder.parent)
         try:
-            folder.mkdir()
+            make(folder)
         except OSError:
             return False
         try:
             for file, value in values.items():
-                (folder / file).write_text(str(value))
+                write(folder / file, str(value))
         except OSError:
             with contextlib.suppress(OSError):
                 folder.rmdir()
             return False
+        for file, value in (others or {}).items():
+            with contextlib.suppress(OSError):
+                write(folder / file, str(value))
         self.folders.append(folder)
         return True
+
+    def holds(self, pid: int) -> None:
+        """See whether a process really went in; without it the group bounds nothing, and says so."""
+        if not all(str(pid) in _words(folder / "cgroup.procs") for folder in self.folders):
+            self.memory = self.processes = False
 
     @property
     def entrances(self) -> list[str]:
@@ -80,6 +114,23 @@ class ControlGroup:
                         break
                     time.sleep(0.01)
         self.folders = []
+
+
+def make(folder: Path) -> None:
+    """Make a group; the kernel puts its files in."""
+    folder.mkdir()
+
+
+def write(file: Path, text: str) -> None:
+    """Write to a file of a group, which is there or not to be had."""
+    with open(os.open(file, os.O_WRONLY), "w", encoding="ascii") as opened:
+        opened.write(text)
+
+
+def _words(file: Path) -> list[str]:
+    with contextlib.suppress(OSError):
+        return file.read_text().split()
+    return []
 
 
 def _remove_left(parent: Path) -> None:

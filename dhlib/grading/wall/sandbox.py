@@ -195,6 +195,7 @@ class Box:
             )
         said.close()
         self.control.settimeout(None)
+        self.group.holds(self.process.pid)
 
     @property
     def watched(self) -> bool:
@@ -390,7 +391,7 @@ def _going_in(group: ControlGroup) -> list[str]:
     shell = shutil.which("sh")
     if not shell:
         return []
-    steps = [f"echo $$ > '{entrance}'" for entrance in group.entrances]
+    steps = [f"{{ echo $$ > '{entrance}'; }} 2>/dev/null" for entrance in group.entrances]
     steps.append("{ echo 1000 > /proc/self/oom_score_adj; } 2>/dev/null")
     return [shell, "-c", f'{"; ".join(steps)}; exec "$@"', "sh"]
 
