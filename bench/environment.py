@@ -39,12 +39,13 @@ def python_of(peer: str) -> Path:
     home = ENVIRONMENTS / peer
     python = home / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     # The commands of an environment name the folder that they were installed in.
-    ready = home / f"ready-{zlib.crc32(lock.read_bytes() + bytes(home)):08x}"
+    ready = home / f"ready-compiled-{zlib.crc32(lock.read_bytes() + bytes(home)):08x}"
     if ready.exists():
         return python
     for words in (
         ["venv", "--quiet", "--clear", "--python", sys.executable, str(home)],
-        ["pip", "sync", "--quiet", "--python", str(home), "--require-hashes", str(lock)],
+        # Compiled, as ours is: else a peer would compile its modules at every start where Python writes no bytecode.
+        ["pip", "sync", "--quiet", "--compile-bytecode", "--python", str(home), "--require-hashes", str(lock)],
     ):
         made = subprocess.run([UV, *words], capture_output=True, text=True, check=False)
         if made.returncode != 0:
