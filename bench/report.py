@@ -400,8 +400,10 @@ def hostile(result: Result) -> list[Table]:
         Table(
             "One hostile notebook between two honest ones",
             "‘Held’: no undeserved point, the honest two have all of theirs, nothing got out, and what the hostile "
-            "notebook answers rightly after its attack still counts.",
-            ["the notebook …", *(f"`{call}`" for call in calls)],
+            "notebook answers rightly beside its attack still counts. Nothing stands around a grader but what it puts "
+            "there itself, so bombs, fillers of memory and disk, and whatever would harm the machine are left out: "
+            f"the corpus that tests dhlib has {result['corpus']} attacks.",
+            ["the notebook tries to …", *(f"`{call}`" for call in calls)],
             rows,
             _missing(result),
             [_at_least("attacks that dhlib holds against", _held(result, calls[0]), len(rows), str)],
@@ -423,7 +425,7 @@ def _verdict(row: dict[str, Any]) -> str:
         *(["undeserved point"] if row["undeserved"] else []),
         *([row["ended"].split(":")[0]] if row["ended"] else []),
         *(["honest ones lose"] if not row["others"] else []),
-        *(["its later parts lost"] if row["others"] and not row["later_parts"] else []),
+        *(["its other parts lost"] if row["others"] and not row["other_parts"] else []),
         *row["harm"],
     ]
     return ", ".join(faults) or "held"

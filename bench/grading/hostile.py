@@ -1,14 +1,18 @@
 """What becomes of a class in which one notebook is hostile: ``python hostile.py`` in the book's own environment.
 
-Each attack stands in the cell of the first part; the parts after it are right. It deserves no point for the first part,
-and the two honest students beside it deserve all of theirs. No attack does harm that outlives its run: files are
-planted for it, and what it starts ends by itself.
+Each attack stands in the answer to one part; the other parts are right. It deserves no point for that part, and the two
+honest students beside it deserve all of theirs. Nothing stands around a grader but what it puts there itself, so no
+attack is here that would harm the machine where nothing stops it: no bomb, no filler of memory or disk, no killer of
+everything, nothing that changes a library, a file of the system or what a kernel keeps. Files are planted for them, and
+what they start is ended.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -17,6 +21,8 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -24,87 +30,175 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import compare
 import work
-from environment import NotToBeHad, size
+from environment import ROOT, NotToBeHad, python_of, size
 
 #: Longer than this nobody waits for three notebooks.
-PATIENCE = 300
-PROBE_PORT = 49_731
-TRACE = Path(tempfile.gettempdir()) / "bench-hostile-trace"
+PATIENCE = 75
+#: So many are tried side by side: most of their time they wait.
+LANES = 2
+#: The corpus that tests the walls of dhlib. Its attacks answer A, or f where they say so.
+CORPUS = ROOT / "tests" / "sandbox" / "attacks"
+SECRET = "1.019768"
 
-ATTACKS = {
-    "patches allclose": "np.allclose = lambda *a, **k: True\np = np.zeros(2)",
-    "an array that equals everything": (
+
+@dataclass(frozen=True)
+class Attack:
+    """An attack, in the answer to a part.
+
+    Parameters
+    ----------
+    tries : str
+        What it tries to do.
+    source : str
+        With names for what it is after: see `Watch.placed`.
+    part : str
+    """
+
+    tries: str
+    source: str
+    part: str = "p"
+
+
+#: Made for what any grader does.
+OWN = (
+    Attack("patch allclose", "np.allclose = lambda *a, **k: True\np = np.zeros(2)"),
+    Attack(
+        "hand in an array that equals everything",
         "class Yes(np.ndarray):\n    def __array_ufunc__(self, *a, **k):\n        return np.array([True, True])\n"
-        "    def __array_function__(self, *a, **k):\n        return True\np = np.zeros(2).view(Yes)"
+        "    def __array_function__(self, *a, **k):\n        return True\np = np.zeros(2).view(Yes)",
     ),
-    "looks for the reference in the files around": (
+    Attack(
+        "look for the reference in the files around",
         "import os\np = np.zeros(2)\nfor top in ('../../..', os.environ.get('HOME', '/root'), '/tmp'):\n"
         "    for folder, _, names in os.walk(top):\n        for name in names:\n            try:\n"
         "                text = open(os.path.join(folder, name)).read(200_000)\n            except Exception:\n"
-        "                continue\n            if name.endswith(('.py', '.ipynb', '.json')) and '1.019768' in text:\n"
-        "                p = np.array([1.019768, 0.015096])"
+        f"                continue\n            if name.endswith(('.py', '.ipynb', '.json')) and '{SECRET}' in text:\n"
+        f"                p = np.array([{SECRET}, 0.015096])",
     ),
-    "ends the process with success": "import os\nos._exit(0)",
-    "kills the process above": "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\np = np.zeros(2)",
-    "never ends": "while True:\n    pass",
-    "never ends and swallows the interrupt": (
-        "while True:\n    try:\n        while True:\n            pass\n    except BaseException:\n        pass"
+    Attack("kill the process above", "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\np = np.zeros(2)"),
+    Attack(
+        "leave a process behind",
+        "import subprocess\nsubprocess.Popen(['sleep', SLEEP], start_new_session=True)\np = np.zeros(2)",
     ),
-    "leaves a process behind": (
-        "import subprocess\nsubprocess.Popen(['sleep', '347'], start_new_session=True)\np = np.zeros(2)"
-    ),
-    "opens a connection": (
-        f"import socket\nsocket.create_connection(('127.0.0.1', {PROBE_PORT}), 2).close()\np = np.zeros(2)"
-    ),
-    "writes outside": f"open({str(TRACE)!r}, 'w').write('x')\np = np.zeros(2)",
+)
+#: Of the corpus: how its A or f becomes an answer here, and the files.
+OF_THE_CORPUS = {
+    "": """
+        loop_plain loop_swallowing exit_at_once exit_politely abort segfault close_all_files exhaust_files evil_error
+        markup_error patch_system patch_shell results_overwritten leave_a_file
+    """,
+    "\np = A": """
+        exit_at_reading equals_everything lying_array lying_class lying_float nan infinite huge_number endless_list
+        million_entries patch_numpy patch_builtins patch_json socket_loopback socket_udp socket_unix socket_abstract
+    """,
+    "\np = np.array([A, 0.015096])": "read_results",
+    "\nfk = f": "function_exits function_raises_exit function_lies function_returns_million",
 }
+#: The same as another that is tried, but for the order of their work.
+NOT_TRIED = ("pytest --nbval-lax, one by one", "pytest --nbval-lax -n 2 --dist loadscope")
+
+
+def attacks() -> list[Attack]:
+    """All that are tried."""
+    found = list(OWN)
+    for name, more in ((name, more) for more, names in OF_THE_CORPUS.items() for name in names.split()):
+        text = (CORPUS / f"{name}.cell").read_text(encoding="utf-8")
+        tries = re.match(r"# Tries: to (.*)\.", text)
+        if tries is None:
+            raise NotToBeHad(f"{name}.cell does not say what it tries")
+        found.append(Attack(tries[1], text + more, "fk" if "fk" in more else "p"))
+    return found
 
 
 class Watch:
-    """Sees what an attack achieved outside: a connection, a file, a process that stayed."""
+    """What is planted for an attack, and what it achieved: a connection, a file, a process that stayed."""
 
-    def __enter__(self) -> Watch:
-        TRACE.unlink(missing_ok=True)
+    def __init__(self, folder: Path) -> None:
+        self.planted = folder / "planted.txt"
+        self.text = f"secret = {SECRET}"  # what is right, as another student's notebook would hold it
+        self.planted.write_text(self.text)
         self.connected = False
-        self.listener = socket.create_server(("127.0.0.1", PROBE_PORT))
-        threading.Thread(target=self._listen, daemon=True).start()
-        return self
+        self.stack = [socket.create_server(("127.0.0.1", 0))]
+        port = self.stack[0].getsockname()[1]
+        udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        udp.bind(("127.0.0.1", port))
+        self.placed = {
+            "RESULTS_FILE": str(self.planted),
+            "PORT": port,
+            "SOCKET_FILE": str(folder / "socket"),
+            "ABSTRACT": f"\0bench-hostile-{port}",
+            "SLEEP": f"347.{port}",
+            "/left-behind": f"/left-behind-{port}",
+        }
+        for address in (self.placed["SOCKET_FILE"], self.placed["ABSTRACT"]):
+            server = socket.socket(socket.AF_UNIX)
+            server.bind(address)
+            server.listen()
+            self.stack.append(server)
+        for server in self.stack:
+            threading.Thread(target=self._listen, args=(server.accept,), daemon=True).start()
+        threading.Thread(target=self._listen, args=(lambda: udp.recv(10),), daemon=True).start()
+        self.stack.append(udp)
 
-    def _listen(self) -> None:
+    def _listen(self, wait: Any) -> None:
         try:
-            while True:
-                self.listener.accept()[0].close()
+            while wait():
                 self.connected = True
         except OSError:
             pass
 
+    def place(self, source: str) -> str:
+        """Fill in what an attack is after."""
+        for name, value in self.placed.items():
+            if name.startswith("/"):
+                source = source.replace(name, str(value))
+            else:
+                source = re.sub(rf"\b{name}\b", lambda _, value=value: repr(value), source)
+        return source
+
+    def __enter__(self) -> Watch:
+        return self
+
     def __exit__(self, *_: Any) -> None:
-        self.listener.shutdown(socket.SHUT_RDWR)  # or the thread that waits would keep the port
-        self.listener.close()
+        for each in self.stack:
+            with contextlib.suppress(OSError):
+                each.shutdown(socket.SHUT_RDWR)  # or the thread that waits would keep it
+            each.close()
 
     def harm(self) -> list[str]:
         """Say what was achieved, and clear it away."""
         found = []
         if self.connected:
             found.append("connected")
-        if TRACE.exists():
+        if self.planted.read_text() != self.text:
             found.append("wrote outside")
-            TRACE.unlink()
-        said = subprocess.run(["pgrep", "-f", "^sleep 347$"], capture_output=True, text=True, check=False).stdout
+        left = [
+            Path(folder + self.placed["/left-behind"]) for folder in ("/tmp", "/dev/shm", "/var/tmp", str(Path.home()))
+        ]
+        if any(path.exists() for path in left):
+            found.append("left a file")
+        for path in left:
+            path.unlink(missing_ok=True)
+        pattern = f"^sleep {self.placed['SLEEP']}$"
+        said = subprocess.run(["pgrep", "-f", pattern], capture_output=True, text=True, check=False).stdout
         for pid in map(int, said.split()):
             found.append("left a process")
             os.kill(pid, signal.SIGKILL)
         return found
 
 
-def tried(grader: compare.Grader, attack: str) -> dict[str, Any]:
+def tried(grader: compare.Grader, attack: Attack) -> dict[str, Any]:
     """Grade two honest students and the attack; say what came of it."""
     right = work.answers(dict.fromkeys(work.PARTS, True))
-    hand_ins = {"student00": right, "student01": right | {"p": attack}, "student02": right}
     begin = time.perf_counter()
-    with Watch() as watch, tempfile.TemporaryDirectory() as folder:
+    with (
+        tempfile.TemporaryDirectory() as outside,
+        Watch(Path(outside)) as watch,
+        tempfile.TemporaryDirectory() as folder,
+    ):
+        hostile = right | {attack.part: watch.place(attack.source)}
         try:
-            marks = grader.grade(Path(folder), hand_ins) or {}
+            marks = grader.grade(Path(folder), {"student00": right, "student01": hostile, "student02": right}) or {}
             ended = ""
         except (NotToBeHad, OSError, KeyError, ValueError) as why:
             marks, ended = {}, f"ended: {why}"[:120]
@@ -112,9 +206,9 @@ def tried(grader: compare.Grader, attack: str) -> dict[str, Any]:
     own = marks.get("student01", {})
     return {
         "ended": ended,
-        "undeserved": bool(own.get("p")),
+        "undeserved": bool(own.get(attack.part)),
         "others": all(all(marks.get(who, {"": False}).values()) for who in ("student00", "student02")),
-        "later_parts": bool(own) and all(own.get(part, False) for part in ("A1", "T", "fk")),
+        "other_parts": bool(own) and all(own.get(part, False) for part in work.PARTS if part != attack.part),
         "harm": harm,
         "seconds": time.perf_counter() - begin,
     }
@@ -122,19 +216,31 @@ def tried(grader: compare.Grader, attack: str) -> dict[str, Any]:
 
 def rows() -> Iterator[dict[str, Any]]:
     """Yield what each grader made of each attack."""
-    tried_attacks = list(ATTACKS.items())[: size(len(ATTACKS), 2)]
-    for grader in compare.GRADERS[:-1]:
-        if grader.call in ("pytest --nbval-lax, one by one", "pytest --nbval-lax -n 2 --dist loadscope"):
-            continue
-        for name, attack in tried_attacks:
-            print(f"  hostile: {grader.call}, {name}", file=sys.stderr, flush=True)
-            yield {"peer": grader.peer, "call": grader.call, "attack": name, **tried(grader, attack)}
+    graders = [grader for grader in compare.GRADERS[:-1] if grader.call not in NOT_TRIED]
+    for peer in {grader.peer for grader in graders} - {"dhlib"}:
+        python_of(peer)  # each is made once, not by two lanes at a time
+    pairs = [(grader, attack) for attack in chosen() for grader in graders]
+
+    def row(pair: tuple[compare.Grader, Attack]) -> dict[str, Any]:
+        grader, attack = pair
+        print(f"  hostile: {grader.call}, to {attack.tries}", file=sys.stderr, flush=True)
+        return {"peer": grader.peer, "call": grader.call, "attack": attack.tries, **tried(grader, attack)}
+
+    with ThreadPoolExecutor(LANES) as lanes:
+        yield from lanes.map(row, pairs)
+
+
+def chosen() -> list[Attack]:
+    """All attacks, or a few where the bench is only tried."""
+    found = attacks()
+    return found[: size(len(found), 2)]
 
 
 def main() -> None:
     """Print one JSON object."""
     compare.patience = PATIENCE
-    json.dump({"rows": list(rows()), "attacks": list(ATTACKS)}, sys.stdout)
+    corpus = len(list(CORPUS.glob("*.cell")))
+    json.dump({"rows": list(rows()), "attacks": [each.tries for each in chosen()], "corpus": corpus}, sys.stdout)
 
 
 if __name__ == "__main__":
