@@ -392,7 +392,7 @@ def _rate(*values: float) -> str:
 def hostile(result: Result) -> list[Table]:
     """One hostile notebook among honest ones."""
     calls = list(dict.fromkeys(row["call"] for row in result["rows"]))
-    rows = []
+    rows, beyond = [], result["beyond"]
     for attack in result["attacks"]:
         found = {row["call"]: row for row in result["rows"] if row["attack"] == attack}
         rows.append([attack, *(_verdict(found[call]) if call in found else "" for call in calls)])
@@ -406,7 +406,15 @@ def hostile(result: Result) -> list[Table]:
             ["the notebook tries to …", *(f"`{call}`" for call in calls)],
             rows,
             _missing(result),
-            [_at_least("attacks that dhlib holds against", _held(result, calls[0]), len(rows), str)],
+            [
+                _at_least("attacks that dhlib holds against", _held(result, calls[0]), len(rows), str),
+                _at_most(
+                    f"the worst of {beyond['of']} notebooks that never end, beyond its limit, with dhlib",
+                    max(0.0, beyond["seconds"]),
+                    1.0,
+                    seconds,
+                ),
+            ],
             [
                 Bar(call, _held(result, call), f"{_held(result, call)} of {len(rows)}", call == calls[0])
                 for call in calls

@@ -94,6 +94,9 @@ OF_THE_CORPUS = {
     "\np = np.array([A, 0.015096])": "read_results",
     "\nfk = f": "function_exits function_raises_exit function_lies function_returns_million",
 }
+#: Of the corpus: what nothing but a limit of time ends. Only dhlib is given these, which has a wall for them.
+ENDLESS = "loop_in_c loop_plain loop_signals_off loop_swallowing sleep_for_ever output_endless fork_bomb thread_bomb"
+LIMIT = 4.0
 #: The same as another that is tried, but for the order of their work.
 NOT_TRIED = ("pytest --nbval-lax, one by one", "pytest --nbval-lax -n 2 --dist loadscope")
 
@@ -214,6 +217,25 @@ def tried(grader: compare.Grader, attack: Attack) -> dict[str, Any]:
     }
 
 
+def beyond() -> dict[str, Any]:
+    """How long the worst of the notebooks that never end takes beyond its limit, with dhlib, and which it is."""
+    from dhlib.grading.notebook import Cell
+    from dhlib.grading.wall import Limits, Sandbox
+
+    limits = Limits(cell_seconds=LIMIT, notebook_seconds=LIMIT)
+    taken = {}
+    with Sandbox(limits) as sandbox:
+        for name in ENDLESS.split()[: size(8, 1)]:
+            source = (CORPUS / f"{name}.cell").read_text(encoding="utf-8")
+            cells = [Cell(source, role="answer", part="A"), Cell("", role="check", part="A")]
+            sandbox.run([], {})  # the box starts, if the one before broke it
+            begin = time.perf_counter()
+            sandbox.run(cells, {"A": {"form": "numbers", "shape": []}})
+            taken[name] = time.perf_counter() - begin - LIMIT
+    worst = max(taken, key=lambda name: taken[name])
+    return {"seconds": taken[worst], "attack": worst, "of": len(taken)}
+
+
 def rows() -> Iterator[dict[str, Any]]:
     """Yield what each grader made of each attack."""
     graders = [grader for grader in compare.GRADERS[:-1] if grader.call not in NOT_TRIED]
@@ -240,7 +262,8 @@ def main() -> None:
     """Print one JSON object."""
     compare.patience = PATIENCE
     corpus = len(list(CORPUS.glob("*.cell")))
-    json.dump({"rows": list(rows()), "attacks": [each.tries for each in chosen()], "corpus": corpus}, sys.stdout)
+    tries = [each.tries for each in chosen()]
+    json.dump({"beyond": beyond(), "rows": list(rows()), "attacks": tries, "corpus": corpus}, sys.stdout)
 
 
 if __name__ == "__main__":

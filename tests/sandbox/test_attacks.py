@@ -18,7 +18,7 @@ import pytest
 
 from dhlib.grading.grade import GRADED, grade_notebook
 from dhlib.grading.wall import Limits
-from dhlib.grading.wall.sandbox import descendants
+from dhlib.grading.wall.sandbox import HOW, STOPPED, descendants
 
 ATTACKS = sorted((Path(__file__).parent / "attacks").glob("*.cell"))
 LIMITS = Limits(cell_seconds=2.0, notebook_seconds=9.0, memory=256 << 20, processes=40, output_bytes=300_000)
@@ -48,12 +48,39 @@ SUCCEED_WITHOUT_WALLS = {
     "socket_abstract": "packet",
 }
 
+#: Attacks that nothing ends but their limit of time.
+ENDLESS = {
+    "endless_iterator",
+    "loop_in_c",
+    "loop_plain",
+    "loop_signals_off",
+    "loop_swallowing",
+    "output_endless",
+    "regex_bomb",
+    "sleep_for_ever",
+    "third_probe_hangs",
+    "third_probe_hangs_stubbornly",
+}
+
+
+class Heard:
+    """A sandbox, and what came of its last notebook under which limits."""
+
+    def __init__(self, sandbox):
+        self.sandbox = sandbox
+
+    def run(self, cells, requests, limits=None):
+        self.limits = limits
+        self.outcome = self.sandbox.run(cells, requests, limits)
+        return self.outcome
+
 
 class World:
     """What stands outside: the exercise with its secret, results, another student's notebook, servers that listen."""
 
     def __init__(self, folder, sandbox):
         self.sandbox = sandbox
+        self.heard = Heard(sandbox)
         self.folder = folder
         self.secret = round(random.SystemRandom().uniform(0.6, 0.9), 12)
         self.exercises = folder / "exercises"
@@ -108,7 +135,7 @@ class World:
         """Grade a notebook of a student who is called `name`."""
         path = self.folder / f"{name}.ipynb"
         path.write_text(json.dumps(notebook(answers)), encoding="utf-8")
-        return grade_notebook(path, "victim", self.exercises, limits, sandbox=self.sandbox)
+        return grade_notebook(path, "victim", self.exercises, limits, sandbox=self.heard)
 
     def attack(self, path, limits=LIMITS):
         """Grade a notebook with an attack in it, and otherwise honest answers."""
@@ -163,6 +190,16 @@ def deserved(source):
     return {part: POINTS[part] for part in words.split() if part in POINTS}, bool(at_most)
 
 
+def ended_by_its_limit(outcome):
+    """Whether a limit of time is what ended a cell, the reading of an answer, or all of it; no clock is asked."""
+    return (
+        HOW["time"] in outcome.killers.values()
+        or any(error.startswith("OutOfTime: ") for error in outcome.errors.values())
+        or {"fault": "timeout"} in outcome.readings.values()
+        or outcome.note == STOPPED.format(seconds=LIMITS.notebook_seconds)
+    )
+
+
 @pytest.fixture(scope="session")
 def world(walls, tmp_path_factory):
     """The world of this process, with walls."""
@@ -179,15 +216,13 @@ def test_an_attack_earns_what_it_deserves_and_costs_nobody_anything(world, path)
     world.reset()
     source = path.read_text(encoding="utf-8")
     before = sorted(p.name for p in world.folder.iterdir())
-    started = time.monotonic()
     result = world.attack(path)
-    seconds = time.monotonic() - started
     parts, or_less = deserved(source)
     got = earned(result)
     assert got == parts or (or_less and got.items() <= parts.items()), (got, result.message, result.marks)
     assert world.achieved(result) == set()
-    # A busy machine is late; a notebook that is not stopped would be far later.
-    assert seconds < LIMITS.notebook_seconds + 10
+    assert world.heard.limits == LIMITS
+    assert path.stem not in ENDLESS or ended_by_its_limit(world.heard.outcome), world.heard.outcome
     assert len(json.dumps([mark.message for mark in result.marks])) < 5000
     if box := world.sandbox._box:
         assert len(descendants(box.process.pid)) == world.idle, "a process is left"
@@ -220,8 +255,17 @@ def test_without_walls_an_attack_succeeds(no_walls, tmp_path, name):
     world.close()
 
 
+@pytest.mark.sandbox
+@pytest.mark.parametrize("name", ["abort", "exit_at_once", "evil_error", "nan"])
+def test_what_ends_otherwise_is_not_taken_for_ended_by_its_limit(world, name):
+    """Negative control."""
+    world.attack(Path(__file__).parent / "attacks" / f"{name}.cell")
+    assert not ended_by_its_limit(world.heard.outcome)
+
+
 def test_the_corpus_is_as_large_as_it_says():
     assert len(ATTACKS) >= 100
+    assert {path.stem for path in ATTACKS} >= ENDLESS
     assert {"loop_swallowing", "memory_list", "fork_bomb", "kill_parent", "read_results", "guess_probes"} <= {
         path.stem for path in ATTACKS
     }
