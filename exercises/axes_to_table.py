@@ -7,8 +7,8 @@ from itertools import permutations
 import numpy as np
 
 from dhlib import Axis, Rx, Ry, Rz, Tx, Ty, Tz, place_frames
-from dhlib.grading.asking import METRES, constant, number, reasoned
-from dhlib.grading.course.sources import matrix, row
+from dhlib.grading.asking import METRES, constant, holding, number, reasoned
+from dhlib.grading.course.sources import lettered, matrix, row
 from dhlib.grading.course.sources import number as number_as_source
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Frames, Function, Numbers, Table
@@ -23,6 +23,26 @@ PLACED = {
     "the size of d_4": "",
     "the offset between q_3 and theta_3": "an x axis that is turned round moves two zeros by half a turn.",
     "the size of a_4": "",
+}
+#: Statements about a converter that takes antiparallel axes for parallel ones, and what to say where they are false.
+CLAIMS = {
+    "the size of u x v is the same for parallel and for antiparallel axes": (True, ""),
+    "with alpha_2 = 0 the offset d_3 leads to the other side": (True, ""),
+    "with alpha_2 = 0 axis 3 points the other way": (True, ""),
+    "the sign of u . v tells parallel from antiparallel axes": (True, ""),
+    "the size of u . v tells parallel from antiparallel axes": (
+        False,
+        "the cosine of 0 is 1 and that of half a turn is −1: their sizes are equal.",
+    ),
+    "with alpha_2 = 0 the length a_2 comes out wrong, too": (
+        False,
+        "a_2 is the distance of two lines, whatever their senses are.",
+    ),
+    "with alpha_2 = 0 axis 2 points the other way": (False, "α_2 stands behind axis 2, and turns what comes after it."),
+    "with another sign of q_3 the table would be right": (
+        False,
+        "the rows behind axis 3 are read from a z that points the other way, whatever q_3 is.",
+    ),
 }
 
 
@@ -49,6 +69,13 @@ class Given:
     joints: tuple[float, ...] = (40, -25, 60, 110, -70)
     #: In which order five numbers of a table are asked for.
     order: tuple[str, ...] = tuple(PLACED)
+    #: Four statements about a converter that takes antiparallel axes for parallel ones.
+    claims: tuple[str, ...] = (
+        "the size of u x v is the same for parallel and for antiparallel axes",
+        "the size of u . v tells parallel from antiparallel axes",
+        "with alpha_2 = 0 the offset d_3 leads to the other side",
+        "with alpha_2 = 0 the length a_2 comes out wrong, too",
+    )
     #: The origins of the file, and how the last axis is tilted: its sine and its cosine.
     column: float = 0.3
     lift: tuple[float, ...] = (0.1, 0.05, 0.2)
@@ -150,6 +177,10 @@ def draw_pairs(lots):
     )
 
 
+#: Parts with one answer for everybody: a function for any two lines, called with many.
+SAME_FOR_ALL = ("link_of",)
+
+
 def draw(lots):
     """Other lines, another K, another file and another order: no length and no angle is that of the book."""
     ahead, height = lots.one("ahead", range(42, 90, 4)), lots.one("K height", range(152, 212, 8))
@@ -173,6 +204,12 @@ def draw(lots):
         hand_at=moved(fifth, (lots.one("hand", [75, 125, 150]), (s5, 0, c5))),
         joints=tuple(sign * size for sign, size in zip(signs, sizes, strict=True)),
         order=tuple(lots.one("order", list(permutations(PLACED))[1:])),
+        claims=tuple(
+            lots.shuffled(
+                "claims",
+                [*lots.some("true claims", holding(CLAIMS), 2), *lots.some("false claims", holding(CLAIMS, False), 2)],
+            )
+        ),
         column=lots.one("column", [0.24, 0.26, 0.28, 0.32, 0.34, 0.36]),
         lift=(
             lots.one("lift x", [0.07, 0.08, 0.09, 0.11, 0.12, 0.13]),
@@ -233,6 +270,7 @@ def cells(given):
         "pairs": "\n".join(["pairs = {", *pairs, "}"]),
         "axes": "\n".join(["axes = [", *axes, "]", f"O5 = {row(given.hand_at)}"]),
         "hand": f"{matrix('M', given.hand)}\nq = np.deg2rad({row(given.joints)})",
+        "claims": lettered("claims", given.claims),
         "asked": "\n".join(["asked = {", *asked, "}"]),
         "file": f"""\
 quarter, tilt = np.pi / 2, np.arctan2({number_as_source(given.tilt[0])}, {number_as_source(given.tilt[1])})
@@ -643,10 +681,8 @@ def exercise(given):
                     "all behind axis 3": "axis 3 points the other way, and the rows after it are read from there.",
                 },
                 {
-                    "a": "",
-                    "b": "the cosine of 0 is 1 and that of half a turn is -1.",
-                    "c": "",
-                    "d": "a_2 is the distance of two lines, whatever their senses are.",
+                    letter: "" if CLAIMS[claim][0] else CLAIMS[claim][1]
+                    for letter, claim in zip("abcd", given.claims, strict=True)
                 },
                 "sec-placing-trap-sense",
                 points=2,

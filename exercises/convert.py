@@ -2,15 +2,31 @@
 
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import permutations
 
 import numpy as np
 
 from dhlib import Chain, Rx, Rz, Tx, Tz
-from dhlib.grading.asking import choice, constant, pose, reasoned
-from dhlib.grading.course.sources import number, row
+from dhlib.grading.asking import choice, constant, pose, reasoned, reasons_by_letter
+from dhlib.grading.course.sources import lettered, number, row
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Function, Numbers, Table
 from dhlib.grading.pictures import described
+
+#: What may tell the convention of a table.
+REASONS = {
+    "pose": "a pose of the arm was measured, and it agrees with one reading only",
+    "parallel": "two axes are known to be parallel, and the row of the link between them shows the convention",
+    "equal": "all rows are equal, so that moving columns changes nothing between the axes",
+    "columns": "the columns stand in the order of one convention",
+}
+#: What to say to whoever gives it where it does not hold.
+NO_REASON = {
+    "pose": "no pose of this arm is known.",
+    "parallel": "nothing is said of parallel axes here.",
+    "equal": "these rows differ from each other.",
+    "columns": "columns can be printed in any order: that proves nothing.",
+}
 
 
 @dataclass(frozen=True)
@@ -36,6 +52,8 @@ class Given:
     #: Rows of another, with the upper arm among them, and the length of three equal links.
     first: tuple[tuple[float, ...], ...] = ((200, 30, -90), (0, 250, 0), (30, 40, 90), (60, 20, 90))
     equal: float = 150
+    #: In which order the reasons are listed.
+    reasons: tuple[str, ...] = ("pose", "parallel", "equal", "columns")
 
     @property
     def W(self):
@@ -77,6 +95,10 @@ DEFAULT = Given()
 QUARTERS = [(90, -90, 90, -90), (-90, -90, 90, 90), (90, 90, -90, -90), (-90, 90, 90, -90)]
 
 
+#: Parts with one answer for everybody: functions for any table, called with many.
+SAME_FOR_ALL = ("to_modified", "to_classic")
+
+
 def draw(lots):
     """Other arms of the same kinds: no length, and no angle but a quarter turn, is that of the book."""
     # Lengths of one arm are all different, so that one that was moved to a wrong place is seen.
@@ -111,6 +133,7 @@ def draw(lots):
         measured_as=lots.one("measured", ["classic", "modified"]),
         first=((lots.one("first height", range(172, 228, 8)), f1, 90), *middle, (f2, f3, lots.one("end", [90, -90]))),
         equal=lots.one("equal", range(110, 190, 20)) + 5,
+        reasons=lots.one("reasons", list(permutations(REASONS))[1:]),
     )
 
 
@@ -167,6 +190,7 @@ Z = Tx({number(x)}) @ Tz({number(z)}) @ Rz(pi / 2)""",
 {listed("rows", unlabelled(given.unknown))}
 q = np.deg2rad({row(given.angles)})
 p_measured = {row(given.measured, decimals=1)}  # millimetres""",
+        "reasons": lettered("reasons", [REASONS[reason] for reason in given.reasons]),
         "two_more": f"""\
 # Rows d_i, a, alpha, and the distance of axes 2 and 3 of the first arm
 {listed("first", unlabelled(given.first))}
@@ -457,12 +481,7 @@ def exercise(given):
                 | {
                     "cannot tell": "the two readings put the hand in different places, and one of them was measured.",
                 },
-                {
-                    "a": "",
-                    "b": "nothing is said of parallel axes here.",
-                    "c": "these rows differ from each other.",
-                    "d": "columns can be printed in any order: that proves nothing.",
-                },
+                reasons_by_letter(given.reasons, NO_REASON | {"pose": ""}),
                 "sec-both-tell-pose",
             ),
             reasoned(
@@ -473,12 +492,7 @@ def exercise(given):
                 | {
                     "cannot tell": "the link between axes 2 and 3 is known: in which row does it stand?",
                 },
-                {
-                    "a": "no pose of this arm is known.",
-                    "b": "",
-                    "c": "these rows differ from each other.",
-                    "d": "columns can be printed in any order: that proves nothing.",
-                },
+                reasons_by_letter(given.reasons, NO_REASON | {"parallel": ""}),
                 "sec-both-tell-parallel",
             ),
             reasoned(
@@ -490,12 +504,11 @@ def exercise(given):
                     "modified": "moved up by a row, would the columns look different?",
                     "cannot tell": "all rows are equal: read either way it is the same arm, with another base or tool.",
                 },
-                {
-                    "a": "no pose of this arm is known.",
-                    "b": "the links of all rows lie between parallel axes: none of them stands out.",
-                    "c": "",
-                    "d": "columns can be printed in any order: that proves nothing.",
-                },
+                reasons_by_letter(
+                    given.reasons,
+                    NO_REASON
+                    | {"parallel": "the links of all rows lie between parallel axes: none stands out.", "equal": ""},
+                ),
                 "sec-both-tell-never",
             ),
         ],

@@ -9,6 +9,7 @@ import numpy as np
 from dhlib import Chain, Revolute, Rx, Ry, Rz, Tx, Ty, Tz, classic
 from dhlib.grading.asking import choice, constant, number
 from dhlib.grading.course.sources import matrix as matrix_text
+from dhlib.grading.course.sources import strings
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Choice, Formula, Function, Numbers
 from dhlib.grading.misconceptions import retold
@@ -36,8 +37,12 @@ class Given:
     lean: float = 0.3
     #: Which step of the printed product is wrong, counted from 0.
     wrong: int = 3
-    #: What the first three pairs of frames obey.
-    order: tuple[str, ...] = ("both hold", "DH2 fails", "DH1 fails")
+    #: What the four pairs of frames obey, and what the last kind obeys by the conditions of the modified convention.
+    order: tuple[str, ...] = ("both hold", "DH2 fails", "DH1 fails", "both fail")
+    modified: str = "both hold"
+    #: In which order the four steps are permuted, and four orders of them, one of which obeys just one condition.
+    steps: tuple[str, ...] = ("Rz", "Tz", "Tx", "Rx")
+    four: tuple[str, ...] = ("Tz Rx Rz Tx", "Rx Tz Rz Tx", "Tz Tx Rx Rz", "Rx Tx Rz Tz")
 
     @property
     def LINK(self):
@@ -52,15 +57,29 @@ class Given:
             "both hold": Rz(self.turn) @ up @ out,
             "DH2 fails": Rz(self.turn) @ Ty(self.aside) @ up @ out,
             "DH1 fails": Rz(self.turn) @ up @ Ry(-self.lean) @ out,
+            "both fail": Rx(self.twist) @ Tx(self.out) @ self.amiss @ Rz(self.turn) @ up,
         }
-        return [*(pairs[kind] for kind in self.order), Rx(self.twist) @ Tx(self.out) @ Rz(self.turn) @ up]
+        return [pairs[kind] for kind in self.order]
+
+    @property
+    def amiss(self):
+        """What stands in the midst of the modified link of the last kind."""
+        return {
+            "both hold": np.eye(4),
+            "DH2 fails": Ty(self.aside),
+            "DH1 fails": Ry(-np.sign(self.twist) * self.lean),
+        }[self.modified]
 
 
 DEFAULT = Given()
 
 
+#: Parts with one answer for everybody: the general link matrix, and a number that is a fact about the four steps.
+SAME_FOR_ALL = ("A_sym", "classic_link", "B_sym", "modified_link", "origin", "products")
+
+
 def draw(lots):
-    """Another link, with theta beyond a quarter turn; other frames, the first three in another order."""
+    """Another link, with theta beyond a quarter turn; other frames, in another order; other orders of the steps."""
     orders = [tuple(order) for order in permutations(DEFAULT.order) if tuple(order) != DEFAULT.order]
     return Given(
         theta=lots.one("theta", [-155, -145, -125, -115, -110, 110, 115, 125, 145, 155]),
@@ -75,6 +94,9 @@ def draw(lots):
         lean=lots.one("lean", [0.16, 0.18, 0.22, 0.24, 0.26, 0.28]),
         wrong=lots.one("wrong", [0, 1, 2]),
         order=lots.one("order", orders),
+        modified=lots.one("modified", ["both hold", "DH1 fails", "DH2 fails"]),
+        steps=lots.one("steps", list(permutations(STEPS))[1:]),
+        four=lots.one_right("four", [*ONE_OF_TWO], [*NEITHER]),
     )
 
 
@@ -84,7 +106,14 @@ def cells(given):
     return {
         "link": matrix_text("A", A, 4),
         "printed": "printed = [" + ", ".join(f'"{step}({symbol})"' for step, symbol in printed(given.wrong)) + "]",
-        "frames": "\n".join(matrix_text(f"F{k}", frame, 4) for k, frame in enumerate(given.frames, 1)),
+        "frames": "\n".join(
+            [
+                *(matrix_text(f"F{k}", frame, 4) for k, frame in enumerate(given.frames, 1)),
+                f"again = F{given.order.index('both fail') + 1}",
+            ]
+        ),
+        "orders": "orders = list(permutations([{}]))".format(", ".join(f'"{step}"' for step in given.steps)),
+        "four": strings("four", given.four),
     }
 
 
@@ -183,7 +212,6 @@ def conditions(part, title, right, because, section="sec-classic-check"):
 # The 24 orders
 
 STEPS = {"Rz": Rz, "Tz": Tz, "Tx": Tx, "Rx": Rx}
-ORDERS = list(permutations(STEPS))
 VALUES = {"Rz": 0.7, "Tz": 1.3, "Tx": 1.9, "Rx": -0.4}
 
 
@@ -199,8 +227,8 @@ def dh2(A):
     return abs(A[1, 0] * A[0, 3] - A[0, 0] * A[1, 3]) < 1e-9
 
 
-def ones(holds):
-    return np.array([float(holds(product(order))) for order in ORDERS])
+def ones(holds, orders):
+    return np.array([float(holds(product(order))) for order in orders])
 
 
 def both(A):
@@ -215,12 +243,33 @@ PAIRS = {
     "both hold": "the line of x1 meets z0 at a right angle.",
     "DH2 fails": "the line of x1 is level, but it passes z0 at a distance.",
     "DH1 fails": "the line of x1 meets z0, but at a slant.",
+    "both fail": "the line of x1 is slanted, and it passes z0 at a distance.",
+}
+#: The same by the conditions of the modified convention.
+MODIFIED_PAIRS = {
+    "both hold": "the line of x0 meets z1 at a right angle: these are modified frames.",
+    "DH2 fails": "z1 is at right angles to x0, but passes it at a distance.",
+    "DH1 fails": "the line of z1 meets x0, but at a slant.",
+}
+
+# Orders by what they obey of the classic convention: one condition of the two, or neither.
+ONE_OF_TWO = {
+    " ".join(order): "DH1 holds, and x1 passes z0 at a distance: one condition alone is no comfort."
+    if dh1(product(order))
+    else "its line of x1 still meets z0, though at a slant: DH2 alone is no comfort."
+    for order in permutations(STEPS)
+    if dh1(product(order)) != dh2(product(order))
+}
+NEITHER = {
+    " ".join(order): "here both conditions fail: x1 is slanted, and passes z0 at a distance."
+    for order in permutations(STEPS)
+    if not dh1(product(order)) and not dh2(product(order))
 }
 
 
 def exercise(given):
     """The exercise with these numbers."""
-    LINK, lean = given.LINK, given.lean
+    LINK, lean, orders = given.LINK, given.lean, list(permutations(given.steps))
     pushed = given.frames[given.order.index("DH2 fails")]
     return Exercise(
         name="one_link",
@@ -332,19 +381,15 @@ def exercise(given):
             ),
             *(
                 conditions(f"pair_{k}", f"Frames, {word} pair", kind, PAIRS[kind])
-                for k, (word, kind) in enumerate(zip(("first", "second", "third"), given.order, strict=True), 1)
+                for k, (word, kind) in enumerate(
+                    zip(("first", "second", "third", "fourth"), given.order, strict=True), 1
+                )
             ),
             conditions(
-                "pair_4",
-                "Frames, fourth pair",
-                "both fail",
-                "the line of x1 is slanted, and it passes z0 at a distance.",
-            ),
-            conditions(
-                "pair_4_modified",
-                "The fourth pair once more",
-                "both hold",
-                "the line of x0 meets z1 at a right angle: these are modified frames.",
+                "again_modified",
+                "One pair once more",
+                given.modified,
+                MODIFIED_PAIRS[given.modified],
                 section="sec-modified-check",
             ),
             number(
@@ -395,29 +440,31 @@ def exercise(given):
                 "obeys",
                 "Which of the 24 orders",
                 3,
-                Numbers(constant(ones(both)), shape=(24,), at=()),
+                Numbers(constant(ones(both, orders)), shape=(24,), at=()),
                 section="sec-classic-orders",
                 traps=[
-                    Trap("Here DH1 alone is tested; DH2 has to hold too.", constant(ones(dh1))),
-                    Trap("Here DH2 alone is tested; DH1 has to hold too.", constant(ones(dh2))),
+                    Trap("Here DH1 alone is tested; DH2 has to hold too.", constant(ones(dh1, orders))),
+                    Trap("Here DH2 alone is tested; DH1 has to hold too.", constant(ones(dh2, orders))),
                     Trap(
-                        "One condition is enough here; both have to hold.", constant(ones(lambda A: dh1(A) or dh2(A)))
+                        "One condition is enough here; both have to hold.",
+                        constant(ones(lambda A: dh1(A) or dh2(A), orders)),
                     ),
                     Trap(
-                        "Here 1 and 0 are exchanged: 1 stands for an order that obeys both.", constant(1 - ones(both))
+                        "Here 1 and 0 are exchanged: 1 stands for an order that obeys both.",
+                        constant(1 - ones(both, orders)),
                     ),
                     Trap(
                         "These are the orders that obey the conditions of the modified convention.",
-                        constant(ones(modified_both)),
+                        constant(ones(modified_both, orders)),
                         "convention",
                     ),
                     Trap(
                         "Only one order is found, and some steps may change places without changing the product.",
-                        constant(np.array([float(order == ("Rz", "Tz", "Tx", "Rx")) for order in ORDERS])),
+                        constant(np.array([float(order == ("Rz", "Tz", "Tx", "Rx")) for order in orders])),
                     ),
                     Trap(
                         "One order is missing: Tx and Tz may change places too, where no turn stands between them.",
-                        constant(np.array([float({*order[:2]} == {"Rz", "Tz"}) for order in ORDERS])),
+                        constant(np.array([float({*order[:2]} == {"Rz", "Tz"}) for order in orders])),
                     ),
                 ],
             ),
@@ -434,20 +481,12 @@ def exercise(given):
                     (2, "There are more than the two conventions: compare all products at random values."),
                 ],
             ),
-            Part(
+            choice(
                 "exception",
-                "Twist before turn",
-                1,
-                Choice(
-                    {
-                        "Tz Rx Rz Tx": "its line of x1 still meets z0, though at a slant: DH2 alone is no comfort.",
-                        "Rx Tz Rz Tx": "here x1 passes z0 at a distance: the offset goes along the twisted z.",
-                        "Tz Tx Rx Rz": "here x1 passes z0 at a distance: the way a goes along the old x.",
-                        "Rx Tx Rz Tz": "this is the modified order; its x1 and z0 pass at a distance.",
-                    },
-                    right="Tz Rx Rz Tx",
-                ),
-                section="sec-classic-orders",
+                "One condition alone",
+                next(order for order in given.four if order in ONE_OF_TWO),
+                {order: (ONE_OF_TWO | NEITHER)[order] for order in given.four},
+                "sec-classic-orders",
             ),
         ],
     )

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from dhlib import Chain, robots
-from dhlib.grading.asking import EXACT, last_pose, link_function, pose, which_lengths
-from dhlib.grading.course.sources import lengths, row
+from dhlib.grading.asking import EXACT, choice, holding, last_pose, link_function, pose, which_holds, which_lengths
+from dhlib.grading.course.sources import lengths, lettered, row
 from dhlib.grading.exercise import Exercise, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Table
+from dhlib.grading.forms import Formula, Frames, Table
 from dhlib.grading.pictures import described, same_for_all
 
 #: Rows of the table that hold a length.
@@ -16,6 +16,16 @@ ARM = robots.pa10_6c("classic", lengths="A")
 SETS = ("A", "B", "B2")
 #: Angles at which somebody may have calibrated an arm.
 CALIBRATED = ([15, 25, 30], [25, 30, 40, 45], [50, 55, 65, 70], [0], [-55, -50, -40, -35], [0])
+#: Why the 6C stands as the 7C does with S3 at 0.
+REASONS = {
+    "S3 at 0 turns nothing, so what it joins is one rigid piece": (True, "that piece is the upper arm of the 6C."),
+    "Rx(90°) Tz(l1) Rx(-90°), between S2 and E1, is a slide and no turn": (True, "it is Ty(-l1): up the upper arm."),
+    "the axes of S2 and E1 are parallel then, and l1 apart": (True, "so are axes 2 and 3 of the 6C."),
+    "row 3 of the 7C is the identity then": (False, "at q3 = 0 it still holds the upper arm and a twist."),
+    "both have the same table": (False, "the 6C has a length a and two offsets; no row of the 7C has."),
+    "the axes of S2 and E1 are one line then": (False, "the upper arm is between them."),
+    "the 7C has no upper arm then": (False, "S3 rolls the upper arm; at 0 it is as long as ever."),
+}
 
 
 @dataclass(frozen=True)
@@ -30,6 +40,16 @@ class Given:
     #: Where the arm of the question about lengths stood, and the set that it has, which the page does not say.
     calibrated: tuple[float, ...] = (20, 35, 60, 0, -45, 0)
     its_set: str = "B"
+    #: Of which length and in which table the place is asked for.
+    length: str = "l1"
+    convention: str = "classic"
+    reasons: tuple[str, ...] = (
+        "row 3 of the 7C is the identity then",
+        "S3 at 0 turns nothing, so what it joins is one rigid piece",
+        "both have the same table",
+    )
+    #: From axis 5 to the tool plate of another arm, in mm.
+    ruler: float = 70.6
 
     @property
     def arm(self):
@@ -47,10 +67,15 @@ class Given:
 DEFAULT = Given()
 
 
+#: Parts with one answer for everybody: no length of the arm stands in this link.
+SAME_FOR_ALL = ("A3",)
+
+
 def draw(lots):
     """Another arm of this kind: no length and no angle is that of the book."""
     sizes = lots.some("angles", range(21, 82, 5), 6)  # all different, so that no sum of two is zero
     signs = lots.one("signs", [(1, 1, 1, -1, 1, 1), (-1, 1, 1, 1, 1, -1), (1, 1, 1, -1, -1, 1), (-1, 1, 1, 1, -1, 1)])
+    length, convention = lots.one("length", [("l1", "modified"), ("l2", "classic"), ("l2", "modified")])
     return Given(
         b=lots.one("b", [0.281, 0.29, 0.299, 0.308, 0.326, 0.335, 0.344]),
         l1=lots.one("l1", [0.415, 0.422, 0.429, 0.436, 0.464, 0.471]),
@@ -59,6 +84,10 @@ def draw(lots):
         angles=tuple(sign * size for sign, size in zip(signs, sizes, strict=True)),
         calibrated=tuple(lots.one(f"calibrated {i}", options) for i, options in enumerate(CALIBRATED, 1)),
         its_set=lots.one("set", SETS),
+        length=length,
+        convention=convention,
+        reasons=lots.one_right("reasons", holding(REASONS), holding(REASONS, False)),
+        ruler=lots.one("ruler", [69.5, 70.7, 79.4, 80.7, 84.4, 85.6]),
     )
 
 
@@ -70,6 +99,9 @@ def cells(given):
         "calibration": f"""\
 q_calibrated = np.deg2rad({row(given.calibrated)})
 p_calibrated = np.array({row(given.found(), decimals=4)})  # metres""",
+        "place": f'length, convention = "{given.length}", "{given.convention}"',
+        "reasons": lettered("reasons", given.reasons),
+        "ruler": f"ruler = {given.ruler}  # millimetres",
     }
 
 
@@ -100,6 +132,36 @@ def wrist(given, lean, bend, with_foot=True):
         return [out * np.cos(q[0]), out * np.sin(q[0]), b + l1 * np.cos(up) + l2 * np.cos(fore)]
 
     return p
+
+
+def place(length, convention):
+    """The part that asks where a length stands."""
+    row, way = {"l1": ({"classic": 2, "modified": 3}[convention], "a"), "l2": (4, "d")}[length]
+    because = {}
+    for i in (2, 3, 4):
+        link = f"link {i}, behind joint {i}" if convention == "classic" else f"link {i - 1}, before joint {i}"
+        because[f"a in row {i}"] = (
+            f"row {i} of a {convention} table holds the a of {link}: which axes does {length} lie between?"
+        )
+        because[f"d in row {i}"] = f"d_{i} is measured along axis {i}. In which direction does {length} run?"
+    because[f"{way} in row {row}"] = {
+        "l1": "axes 2 and 3 are parallel here, and the upper arm is the distance between them.",
+        "l2": "the forearm runs along axis 4, from the elbow to the wrist.",
+    }[length]
+    return choice("upper_arm", "Where a length went", f"{way} in row {row}", because, "sec-pa10-6c")
+
+
+def plate(ruler):
+    """The part that asks which set a ruler speaks for."""
+    flanges = {each: 1000 * robots.pa10_6c(lengths=each).joints[5].d for each in SETS}
+    right = min(SETS, key=lambda each: abs(flanges[each] - ruler))
+    because = {
+        each: f"its {f:.0f} mm are nearest to {ruler} mm."
+        if each == right
+        else f"its {f:.0f} mm are {abs(f - ruler):.1f} mm off; one of the sets is nearer."
+        for each, f in flanges.items()
+    }
+    return choice("plate", "What a ruler says", right, because, "sec-pa10-lengths")
 
 
 def struck_out(given):
@@ -173,50 +235,10 @@ def exercise(given):
                 kinematics=False,
             ),
             *last_pose(6, at, QUARTERS, "sec-pa10-6c", traps=[struck_out(given)]),
-            Part(
-                "upper_arm",
-                "Where the upper arm went",
-                1,
-                Choice(
-                    {
-                        "d_2": "d_2 is measured along axis 2, which runs across the arm.",
-                        "d_3": "d_3 is measured along axis 3, which is the elbow now and runs across the arm.",
-                        "a_2": "axes 2 and 3 are parallel here, and the upper arm is the distance between them.",
-                    },
-                    right="a_2",
-                ),
-                section="sec-pa10-6c",
-            ),
-            Part(
-                "why",
-                "Why the 6C is the 7C at q3 = 0",
-                1,
-                Choice(
-                    {
-                        "row 3 of the 7C is the identity": "at q3 = 0 it still holds the upper arm and a twist.",
-                        "S3 at 0 turns nothing": "the links on both sides of S3 are one rigid piece then, the "
-                        "upper arm of the 6C.",
-                        "both have the same table": "the 6C has a length a and two offsets; no row of the 7C has.",
-                    },
-                    right="S3 at 0 turns nothing",
-                ),
-                section="sec-pa10-6c",
-            ),
+            place(given.length, given.convention),
+            which_holds("why", "Why the 6C is the 7C at q3 = 0", given.reasons, REASONS, "sec-pa10-6c"),
             which_lengths(given.found, SETS, given.its_set, "sec-pa10-lengths"),
-            Part(
-                "plate",
-                "What a ruler says",
-                1,
-                Choice(
-                    {
-                        "A": "its 70 mm are nearest to 70.6 mm.",
-                        "B": "its 80 mm are 9.4 mm off; one of the sets is nearer.",
-                        "B2": "its 85 mm are 14.4 mm off; one of the sets is nearer.",
-                    },
-                    right="A",
-                ),
-                section="sec-pa10-lengths",
-            ),
+            plate(given.ruler),
         ],
     )
 

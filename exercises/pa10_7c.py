@@ -5,10 +5,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from dhlib import Chain, robots
-from dhlib.grading.asking import EXACT, constant, last_pose, link_function, measured_at, pose, which_lengths
-from dhlib.grading.course.sources import lengths, matrix, row
+from dhlib.grading.asking import (
+    EXACT,
+    choice,
+    constant,
+    holding,
+    last_pose,
+    link_function,
+    measured_at,
+    pose,
+    which_holds,
+    which_lengths,
+)
+from dhlib.grading.course.sources import lengths, lettered, matrix, row
 from dhlib.grading.exercise import Exercise, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.forms import Formula, Frames, Numbers, Table
 from dhlib.grading.pictures import described, same_for_all
 
 #: Rows of the table that hold a length.
@@ -25,6 +36,27 @@ HIDDEN = (
     [43, 46, 54, 57],
     [14, 17],
 )
+#: The last joint that moves something, and why.
+WATCHED = {
+    "the direction of the upper arm": (2, "S3 runs along the upper arm and only rolls it."),
+    "the position of the elbow": (2, "S3 runs along the upper arm, and the elbow lies on its axis."),
+    "the direction of the forearm": (4, "E2 runs along the forearm and only rolls it."),
+    "the position of the wrist": (4, "E2 runs along the forearm, and the wrist lies on its axis."),
+    "the direction of the last axis": (6, "W2 turns about this axis, and so it stays."),
+    "the position of the flange": (6, "the middle of the flange lies on the axis of W2."),
+}
+#: What happens when the elbow goes round and the hand stays.
+CLAIMS = {
+    "all joints but E1 turn": (True, "E1 sets the distance from shoulder to wrist, and that stays."),
+    "E1 keeps its angle": (True, "it sets the distance from shoulder to wrist, and that stays."),
+    "the angle between upper arm and forearm stays": (True, "three sides of fixed length make one triangle."),
+    "the elbow turns about the line from shoulder to wrist": (True, "both ends of that line are held fast."),
+    "S3 alone turns": (False, "turning S3 alone moves the forearm, and the hand with it."),
+    "all joints turn": (False, "one keeps its angle: it sets the distance from shoulder to wrist."),
+    "E1 alone turns": (False, "bending the elbow changes the distance from shoulder to wrist."),
+    "the wrist moves with the elbow": (False, "the wrist lies f behind the flange, and the flange is held fast."),
+    "the joints behind the elbow keep their angles": (False, "the forearm turns; the hand would turn with it."),
+}
 
 
 @dataclass(frozen=True)
@@ -41,6 +73,9 @@ class Given:
     #: Where the arm of the question about lengths stood, and the set that it has, which the page does not say.
     calibrated: tuple[float, ...] = (20, 35, -40, 60, 10, -45, 0)
     its_set: str = "B2"
+    #: Of what it is asked which joint angles it depends on.
+    watched: str = "the direction of the upper arm"
+    claims: tuple[str, ...] = ("S3 alone turns", "all joints turn", "all joints but E1 turn")
 
     @property
     def arm(self):
@@ -81,6 +116,8 @@ def draw(lots):
         hidden=tuple(lots.one(f"hidden {i}", options) for i, options in enumerate(HIDDEN, 1)),
         calibrated=tuple(lots.one(f"calibrated {i}", options) for i, options in enumerate(CALIBRATED, 1)),
         its_set=lots.one("set", SETS),
+        watched=lots.one("watched", list(WATCHED)[1:]),
+        claims=lots.one_right("claims", holding(CLAIMS), holding(CLAIMS, False)),
     )
 
 
@@ -93,6 +130,8 @@ def cells(given):
         "calibration": f"""\
 q_calibrated = np.deg2rad({row(given.calibrated)})
 p_calibrated = np.array({row(given.found(), decimals=4)})  # metres""",
+        "watched": f'watched = "{given.watched}"',
+        "claims": lettered("claims", given.claims),
     }
 
 
@@ -136,6 +175,20 @@ def highest(given, sign=1):
     return S + along * w + sign * radius * up / np.linalg.norm(up)
 
 
+def counting(watched):
+    """The part that asks which joint angles something depends on."""
+    last, why = WATCHED[watched]
+    because = {
+        f"theta1 to theta{i}": why
+        if i == last
+        else f"joint {last} moves it too: what does that joint carry?"
+        if i < last
+        else f"what does joint {i} move? Is it the axis of that joint, or a point on it, or beyond?"
+        for i in range(2, 8)
+    }
+    return choice("upper_arm", "Which angles count", f"theta1 to theta{last}", because, "sec-pa10-product")
+
+
 def exercise(given):
     """The exercise with these numbers."""
     arm, at = given.arm, np.deg2rad(given.angles)
@@ -170,20 +223,7 @@ def exercise(given):
                 section="sec-pa10-product",
                 kinematics=False,
             ),
-            Part(
-                "upper_arm",
-                "Which angles turn the upper arm",
-                1,
-                Choice(
-                    {
-                        "theta1, theta2": "S3 runs along the upper arm and only rolls it.",
-                        "theta1, theta2, theta3": "S3 runs along the upper arm: it rolls it, and its direction stays.",
-                        "theta2, theta3": "S1 turns the whole arm, and the upper arm with it.",
-                    },
-                    right="theta1, theta2",
-                ),
-                section="sec-pa10-product",
-            ),
+            counting(given.watched),
             Part(
                 "W",
                 "The wrist of a given hand",
@@ -246,20 +286,7 @@ def exercise(given):
                     ),
                 ],
             ),
-            Part(
-                "redundant",
-                "What is left over",
-                1,
-                Choice(
-                    {
-                        "S3 alone can turn": "turning S3 alone moves the forearm, and the hand with it.",
-                        "all joints turn together": "one keeps its angle: it sets the distance from shoulder to wrist.",
-                        "all but E1 turn together": "E1 sets the distance from shoulder to wrist, and that stays.",
-                    },
-                    right="all but E1 turn together",
-                ),
-                section="sec-pa10-redundancy",
-            ),
+            which_holds("redundant", "What is left over", given.claims, CLAIMS, "sec-pa10-redundancy"),
             which_lengths(given.found, SETS, given.its_set, "sec-pa10-lengths"),
         ],
     )

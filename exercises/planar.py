@@ -5,13 +5,51 @@ from dataclasses import dataclass
 import numpy as np
 
 from dhlib import Chain, Revolute, Rz, Tx
-from dhlib.grading.asking import choice, link_function, number
+from dhlib.grading.asking import choice, holding, link_function, number, which_holds
+from dhlib.grading.course.sources import lettered, row, strings
 from dhlib.grading.course.sources import number as number_text
-from dhlib.grading.course.sources import row
 from dhlib.grading.exercise import Exercise, Part, Trap
 from dhlib.grading.forms import Formula, Numbers, Table
 from dhlib.grading.pictures import same_for_all
 from dhlib.scene import Scene
+
+#: Mistakes in the classic table of a planar arm: whether each passes unseen, and what to say of it.
+MISTAKES = {
+    "sign of alpha1": (True, "the twist is 0, and -0 is 0: no planar arm can show that you would have got it wrong."),
+    "sign of alpha2": (True, "the twist is 0, and -0 is 0: no planar arm can show that you would have got it wrong."),
+    "sign of d1": (
+        True,
+        "the offset is 0, and -0 is 0: no arm without offsets shows that you would have got it wrong.",
+    ),
+    "sign of d2": (
+        True,
+        "the offset is 0, and -0 is 0: no arm without offsets shows that you would have got it wrong.",
+    ),
+    "sign of a1": (False, "with a1 reversed the elbow is on the other side of axis 1: that shows at any angles."),
+    "sign of a2": (False, "with a2 reversed the hand is on the other side of the elbow: that shows at any angles."),
+    "sense of joint 1": (False, "then the arm turns the other way: that shows unless θ1 is 0 or 180°."),
+    "sense of joint 2": (False, "then the arm bends the other way: that shows unless θ2 is 0 or 180°."),
+    "links exchanged": (False, "with the links exchanged the elbow is elsewhere: that shows unless it is straight."),
+}
+#: What somebody may have changed in the 3R arm, and what has become of it.
+CHANGES = {
+    "the last link is longer": "another tool",
+    "the hand is turned in its mount": "another tool",
+    "the first link is longer": "another arm",
+    "the second link is shorter": "another arm",
+    "the whole arm stands higher": "another base",
+    "the whole arm stands further to the left": "another base",
+}
+#: Where a function for link matrices may be tried.
+TRIALS = {
+    "the Quickshot at random angles": (True, "twists, lengths, offsets and angles are all alive there."),
+    "the PUMA 560 at random angles": (True, "twists, lengths, offsets and angles are all alive there."),
+    "the Quickshot at zero": (False, "at zero every sine of a joint angle is 0, and so many a sign passes."),
+    "the PUMA 560 at zero": (False, "at zero every sine of a joint angle is 0, and so many a sign passes."),
+    "the planar 3R at zero": (False, "no angle and no twist: nearly every mistake passes there."),
+    "the planar 3R at random angles": (False, "no twist and no offset: a mistake in α or d passes at any angles."),
+    "the planar 2R at random angles": (False, "no twist and no offset: a mistake in α or d passes at any angles."),
+}
 
 
 @dataclass(frozen=True)
@@ -22,6 +60,29 @@ class Given:
     angles: tuple[float, ...] = (35, -70, 50)
     #: Of a draughtsman's table.
     offsets: tuple[float, ...] = (40, -25, 60)
+    #: Which joint turns alone, and of which frame the origin is watched.
+    turned: tuple[int, int] = (1, 1)
+    mistakes: tuple[str, ...] = ("sign of alpha1", "sign of a2", "sense of joint 2", "links exchanged")
+    #: How the links of another 2R arm are made of ours.
+    built: str = "exchanged"
+    change: str = "the last link is longer"
+    trials: tuple[str, ...] = (
+        "the planar 3R at zero",
+        "the planar 3R at random angles",
+        "the Quickshot at zero",
+        "the Quickshot at random angles",
+    )
+
+    @property
+    def others(self):
+        """The lengths a1 and a2 of the other 2R arm."""
+        l1, l2, _ = self.lengths
+        return {
+            "exchanged": (l2, l1),
+            "x reversed": (-l1, l2),
+            "elbow moved": (l1 - 20, l2 + 20),
+            "both longer": (l1 + 20, l2 + 20),
+        }[self.built]
 
     def arm(self, n, convention="classic"):
         """The first n links; in the modified convention frame {n} stands on axis n, and the tool has the last one."""
@@ -30,6 +91,10 @@ class Given:
 
 
 DEFAULT = Given()
+
+
+#: Parts with one answer for everybody: a number that is a fact about the four steps.
+SAME_FOR_ALL = ("orders",)
 
 
 def draw(lots):
@@ -48,6 +113,11 @@ def draw(lots):
             -lots.one("d2", range(21, 40, 3)),
             lots.one("d3", range(71, 95, 4)),
         ),
+        turned=lots.one("turned", [(2, 2), (3, 3), (2, 1), (3, 1), (3, 2), (1, 2), (1, 3), (2, 3)]),
+        mistakes=lots.one_right("mistakes", holding(MISTAKES), holding(MISTAKES, False)),
+        built=lots.one("built", ["exchanged", "x reversed", "elbow moved", "both longer"]),
+        change=lots.one("change", list(CHANGES)[1:]),
+        trials=lots.one_right("trials", holding(TRIALS), holding(TRIALS, False)),
     )
 
 
@@ -58,6 +128,10 @@ def cells(given):
         "lengths": f"l1, l2, l3 = {l1}, {l2}, {l3}  # millimetres",
         "angles": f"q = np.deg2rad({row(given.angles)})",
         "offsets": f"d = {row(given.offsets)}  # millimetres",
+        "turned": "joint, origin = {}, {}".format(*given.turned),
+        "mistakes": strings("mistakes", given.mistakes),
+        "friends": f'others = {row(given.others)}  # millimetres\nchange = "{given.change}"',
+        "trials": lettered("trials", given.trials),
     }
 
 
@@ -108,10 +182,56 @@ SUMMED = [
 ]
 
 
-def one_of(part, title, section, right, **options):
-    """One of several; keys with _ stand for words."""
-    options = {key.replace("_", " "): says for key, says in options.items()}
-    return choice(part, title, right, options, section)
+def stays(joint, origin):
+    """In which convention an origin stays: a modified one lies on its own axis, a classic one on the next."""
+    moves = {"classic": origin >= joint, "modified": origin > joint}
+    there = {"classic": f"at the far end of link {origin}", "modified": f"on axis {origin}"}
+    right = {(True, True): "neither", (True, False): "modified", (False, False): "both"}[*moves.values()]
+    facts = "; ".join(
+        f"the {name} O{origin} lies {there[name]}, which joint {joint} {'moves' if moved else 'leaves where it is'}"
+        for name, moved in moves.items()
+    )
+    follow = f"follow what joint {joint} moves: are the far end of link {origin} and axis {origin} among it?"
+    because = dict.fromkeys(("classic", "modified", "both", "neither"), follow)
+    return choice("stays", "Which origin stays", right, because | {right: f"{facts}."}, "sec-modified-product")
+
+
+def exchanged(given):
+    """What another 2R arm is, compared with ours."""
+    l1, l2, _ = given.lengths
+    a1, a2 = map(abs, given.others)
+    same_reach = (abs(a1 - a2), a1 + a2) == (l1 - l2, l1 + l2)
+    right = "same arm" if a1 == l1 and a2 == l2 else "same reach" if same_reach else "other reach"
+    span = f"ours reaches from {l1 - l2} to {l1 + l2} mm, the other from {abs(a1 - a2)} to {a1 + a2} mm"
+    because = {
+        "same arm": "x1 was turned round: with other zeros of both joints every pose is the same."
+        if right == "same arm"
+        else f"the axes of joints 1 and 2 are {l1} mm apart in the one and {a1} mm in the other.",
+        "same reach": f"{span}; but the axes stand elsewhere: two arms."
+        if right == "same reach"
+        else "compare the distances from axis to axis, and how far the arm reaches straight, and folded.",
+        "other reach": f"{span}."
+        if right == "other reach"
+        else "the hand is furthest with the arm straight and nearest with it folded: work out both.",
+    }
+    return choice("exchanged", "Another 2R arm", right, because, "sec-quickshot-tables")
+
+
+def changed(change):
+    """What became of the 3R arm."""
+    right = CHANGES[change]
+    because = {
+        "another arm": "the distances between the joint axes are what makes the arm, and one of them is another."
+        if right == "another arm"
+        else "the three joint axes stand to each other as before: it is something else that has changed.",
+        "another tool": "the axes are where they were; what lies behind the last of them is for the tool to say."
+        if right == "another tool"
+        else "behind the last axis all is as it was.",
+        "another base": "the axes stand to each other as before, but elsewhere in the room: that is the base."
+        if right == "another base"
+        else "axis 1 stands where it stood.",
+    }
+    return choice("longer", "What has changed", right, because, "sec-both-tool")
 
 
 def own_link(classic):
@@ -258,16 +378,7 @@ def exercise(given):
                 ],
                 kinematics=False,
             ),
-            one_of(
-                "stays",
-                "Which origin stays",
-                "sec-modified-product",
-                "modified",
-                classic="there O1 lies on axis 2, at the end of the link that turns.",
-                modified="there O1 lies on axis 1, and turning about that axis leaves it where it is.",
-                both="follow the end of link 1 as joint 1 turns: which frame has its origin there?",
-                neither="a point on axis 1 does not move as joint 1 turns: which frame has its origin there?",
-            ),
+            stays(*given.turned),
             number(
                 "orders",
                 "Orders that pass on a planar link",
@@ -295,44 +406,16 @@ def exercise(given):
                     (float(np.linalg.norm(offsets)), "These lengths are parallel, not at right angles: they add up."),
                 ],
             ),
-            one_of(
+            choice(
                 "unseen",
                 "A mistake that passes",
+                next(mistake for mistake in given.mistakes if MISTAKES[mistake][0]),
+                {mistake: MISTAKES[mistake][1] for mistake in given.mistakes},
                 "sec-classic-trap-sign",
-                "sign of alpha1",
-                sign_of_alpha1="the twist is 0, and -0 is 0: no planar arm can show that you would have got it wrong.",
-                sign_of_a2="with a2 reversed the hand is on the other side of the elbow: that shows at any angles.",
-                sense_of_joint_2="then the arm bends the other way: that shows unless θ2 is 0 or 180°.",
-                links_exchanged="with the links exchanged the elbow is elsewhere: that shows unless it is straight.",
             ),
-            one_of(
-                "exchanged",
-                "Two links exchanged",
-                "sec-quickshot-tables",
-                "same reach",
-                same_arm=f"the axes of joints 1 and 2 are {l1} mm apart in the one and {l2} mm in the other.",
-                same_reach=f"both reach from {l1 - l2} to {l1 + l2} mm, but the axes stand elsewhere: two arms.",
-                other_reach="the hand is furthest with the arm straight and nearest with it folded: work out both.",
-            ),
-            one_of(
-                "longer",
-                "A longer last link",
-                "sec-both-tool",
-                "another tool",
-                another_arm="the three joint axes are where they were: what has changed lies behind all of them.",
-                another_tool="the axes are where they were; what lies behind the last of them is for the tool to say.",
-                mirror_image="nothing was reflected: no length has changed its sign.",
-            ),
-            one_of(
-                "trial",
-                "Where to test",
-                "sec-trap-zero-only",
-                "Quickshot at random angles",
-                planar_3R_at_zero="no angle and no twist: nearly every mistake passes there.",
-                planar_3R_at_random_angles="no twist and no offset: a mistake in α or d passes at any angles.",
-                Quickshot_at_zero="at zero every sine of a joint angle is 0, and so many a sign passes.",
-                Quickshot_at_random_angles="twists, lengths, offsets and angles are all alive there.",
-            ),
+            exchanged(given),
+            changed(given.change),
+            which_holds("trial", "Where to test", given.trials, TRIALS, "sec-trap-zero-only"),
         ],
     )
 

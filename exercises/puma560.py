@@ -1,17 +1,24 @@
 """What the PUMA 560 exercise asks, and how it is marked."""
 
 from dataclasses import dataclass
+from itertools import combinations, permutations, product
 
 import numpy as np
 
 from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, robots
-from dhlib.grading.asking import EXACT, METRES, last_pose, link_function, measured_at, pose, with_gripper
-from dhlib.grading.course.sources import lengths, matrix, number, row
+from dhlib.grading.asking import EXACT, METRES, choice, last_pose, link_function, measured_at, pose, with_gripper
+from dhlib.grading.course.sources import lengths, matrix, number, row, strings
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Table
+from dhlib.grading.forms import Formula, Frames, Table
 from dhlib.grading.pictures import described, same_for_all
 
 CRAIG = robots.puma560("modified", "craig")
+#: Numbers of the classic table whose sign makes the mirror image, if it is changed alone; and those that may be.
+HAND = ("alpha_3", "a_3", "d_3", "d_4")
+FREE = {"alpha_1": "x_1", "a_2": "x_2", "alpha_4": "x_4", "alpha_5": "x_5"}
+#: How an entry of the first column is printed: right, with a wrong sign, or with a wrong index too.
+SLIPS = {"right": (6, 1), "one": (6, -1), "two": (5, -1)}
+ENTRIES = ("n_x", "n_y", "n_z")
 
 
 @dataclass(frozen=True)
@@ -27,6 +34,13 @@ class Given:
     gripper: tuple[float, ...] = (0.16, 45, -30)
     #: The pose of the last part comes from these joints; the page does not say so.
     hidden: tuple[float, ...] = (-35, 20, -75, 110, 50, -25)
+    #: Which of links 5 and 6 is printed wrongly, in which row, and which of the two stands first.
+    printed_links: tuple[int, int, int] = (5, 3, 5)
+    #: How many slips there are in n_x, n_y and n_z as printed.
+    slips: tuple[str, ...] = ("two", "one", "right")
+    #: Four changes of sign, one of which makes the mirror image; and which x axis another book has reversed.
+    signs: tuple[str, ...] = ("a_2", "alpha_4", "d_3", "d_3 and d_4")
+    reversed_x: int = 1
 
     @property
     def arm(self):
@@ -45,6 +59,10 @@ class Given:
 
 
 DEFAULT = Given()
+
+
+#: Parts with one answer for everybody: no length of the arm stands in these links.
+SAME_FOR_ALL = ("A1", "A2", "A5", "A6")
 
 
 def draw(lots):
@@ -72,16 +90,45 @@ def draw(lots):
             lots.one(f"hidden {i}", [*range(-last - 100, -last, 10), *range(10 + last, 110 + last, 10)])
             for i, last in enumerate((6, 1, 7, 4, 8, 3), 1)
         ),
+        printed_links=lots.one(
+            "links", [case for case in product((5, 6), (2, 3), (5, 6)) if case != DEFAULT.printed_links]
+        ),
+        slips=lots.one("slips", list(permutations(DEFAULT.slips))[1:]),
+        signs=tuple(
+            lots.shuffled(
+                "signs",
+                [
+                    lots.one("mirror", HAND),
+                    " and ".join(lots.one("two signs", list(combinations(HAND, 2)))),
+                    *lots.some("free signs", list(FREE), 2),
+                ],
+            )
+        ),
+        reversed_x=lots.one("reversed", [2, 3, 4, 5]),
     )
 
 
 def cells(given):
     """The given cells of the notebook."""
     measured = measured_at(given.in_the_workshop, np.deg2rad(given.hidden))
+    wrong_link, wrong_row, first_link = given.printed_links
     length, turn, tilt = given.gripper
     return {
         "arm": lengths("metres", a2=given.a2, a3=given.a3, d3=given.d3, d4=given.d4),
         "angles": f"q = np.deg2rad({row(given.angles)})",
+        "links": "\n".join(
+            f"{name} = {printed_link(i, wrong_row if i == wrong_link else 0)}"
+            for name, i in (("first", first_link), ("second", 11 - first_link))
+        ),
+        "column": "\n".join(
+            [
+                "printed = {",
+                *(f'    "{ENTRIES[k]}": {printed_entry(k, *SLIPS[how])},' for k, how in enumerate(given.slips)),
+                "}",
+            ]
+        ),
+        "signs": strings("signs", given.signs),
+        "other_table": printed_table(given.reversed_x),
         "ends": f"""\
 # Lengths in metres, turn and tilt in radians
 corner = {row(given.corner)}
@@ -116,16 +163,27 @@ def letters(q):
     return c, s, np.cos(q[1] + q[2]), np.sin(q[1] + q[2])
 
 
-def n_printed(row, slip4, sign):
-    """Entries n_x and n_y of the slides, with S4 S5 or S4 S6 in the first bracket and a sign before the second."""
+def n_entry(row, slip4=6, sign=1):
+    """An entry of the first column; its first bracket may hold S4 S5 for S4 S6, and the sign after it may be wrong."""
 
     def entry(arm, q):
         c, s, c23, s23 = letters(q)
-        bracket = c23 * (c[4] * c[5] * c[6] - s[4] * s[slip4]) - s23 * s[5] * c[6]
-        first, second = (c[1], s[1]) if row == 0 else (s[1], c[1])
-        return first * bracket + sign * second * (s[4] * c[5] * c[6] + c[4] * s[6])
+        bracket = c[4] * c[5] * c[6] - s[4] * s[slip4]
+        out, aside = c23 * bracket - s23 * s[5] * c[6], sign * (s[4] * c[5] * c[6] + c[4] * s[6])
+        return (c[1] * out + s[1] * aside, s[1] * out - c[1] * aside, -s23 * bracket - sign * c23 * s[5] * c[6])[row]
 
     return entry
+
+
+def printed_entry(row, slip4, sign):
+    """The same, as source in the letters of the slides."""
+    bracket, plus, minus = f"(C4 * C5 * C6 - S4 * S{slip4})", *("+-" if sign > 0 else "-+")
+    out, aside = f"(C23 * {bracket} - S23 * S5 * C6)", "(S4 * C5 * C6 + C4 * S6)"
+    return (
+        f"C1 * {out} {plus} S1 * {aside}",
+        f"S1 * {out} {minus} C1 * {aside}",
+        f"-S23 * {bracket} {minus} C23 * S5 * C6",
+    )[row]
 
 
 def wrist(given, lift, aside=1):
@@ -145,29 +203,139 @@ def wrist(given, lift, aside=1):
     return p
 
 
-def link_4_5_printed(arm, q):
-    """Link matrix 5 as the slides print it."""
-    c, s = np.cos(q[4]), np.sin(q[4])
-    return [[c, -s, 0, 0], [0, 0, -1, 0], [-s, -c, 0, 0], [0, 0, 0, 1]]
+def mirrored(i, wrong_row=3):
+    """Link 5 or 6 with the wrong sign in its second or third row."""
+    sides = np.ones((4, 1))
+    sides[wrong_row - 1] = -1
+    return lambda arm, q: sides * arm.A(i, q)
 
 
-def n_traps(row):
-    """What becomes of the printed n_x or n_y when it is mended in part, or not at all."""
-    other = "It belongs to a wrist whose three twists have the other signs, and not to the p beside it."
-    if row == 1:
-        says = f"This is the entry as it is printed. {other} Look at the sign before C1."
-        return [Trap(says, n_printed(1, 6, +1))]
-    as_it_is = "This is the entry as it is printed. An index is wrong in its first bracket, and then a sign."
-    return [
-        Trap(as_it_is, n_printed(0, 5, -1)),
-        Trap(f"S4 S6 is right. One slip is left. {other} Look at the sign before S1.", n_printed(0, 6, -1)),
-        Trap("The sign before S1 is right. One slip is left: an index in the first bracket.", n_printed(0, 5, +1)),
+def printed_link(i, wrong_row):
+    """Link 5 or 6 as source, with the wrong sign in a row, or in none."""
+    up, down = (
+        (1 if i == 5 else -1) * (-1 if wrong_row == 3 else 1),
+        (-1 if i == 5 else 1) * (-1 if wrong_row == 2 else 1),
+    )
+    third = f"[S{i}, C{i}, 0, 0]" if up > 0 else f"[-S{i}, -C{i}, 0, 0]"
+    return f"sp.Matrix([[C{i}, -S{i}, 0, 0], [0, 0, {down}, 0], {third}, [0, 0, 0, 1]])"
+
+
+def mended_link(i, wrong_row, arm, title):
+    """Link 5 or 6, one of which is printed wrongly."""
+    z = "down" if i == 6 else "to the left"
+    turn = 90 if i == 5 else -90
+    return Part(
+        f"A{i}",
+        title,
+        1,
+        Formula(pose(i - 1, i), symbols=SYMBOLS, **EXACT),
+        section="sec-puma560-links",
+        arm=arm,
+        traps=[
+            Trap(
+                "Its determinant is -1, and no link of any arm has that: which row has the wrong sign?",
+                mirrored(i, wrong_row),
+            ),
+            Trap(
+                f"Its determinant is +1, but its twist is {-turn:+}°. Which turn about x leads from z_{i - 1} "
+                f"to z_{i}, {z}?",
+                lambda arm, q: Rx(np.deg2rad(-turn)) @ Rz(q[i - 1]),
+            ),
+        ],
+        kinematics=False,
+    )
+
+
+def printed_table(reversed_x):
+    """The classic table with one x axis reversed, as source."""
+    rows = [
+        ["theta1", "0", "0", "-pi / 2"],
+        ["theta2", "0", "a2", "0"],
+        ["theta3", "d3", "a3", "-pi / 2"],
+        ["theta4", "d4", "0", "pi / 2"],
+        ["theta5", "0", "0", "-pi / 2"],
+        ["theta6", "0", "0", "0"],
     ]
+    theta, d, *link = rows[reversed_x - 1]
+    rows[reversed_x - 1] = [
+        theta,
+        d,
+        *(each if each == "0" else each[1:] if each[0] == "-" else f"-{each}" for each in link),
+    ]
+    return "\n".join(["other_table = [", *(f"    [{', '.join(each)}]," for each in rows), "]"])
+
+
+def mended(k, slips, arm):
+    """The part that asks for the first or the second of the entries that are printed wrongly."""
+    row = [row for row, how in enumerate(slips) if how != "right"][k]
+    before = ("S1", "C1", "C23")[row]
+    wrist = (
+        " It belongs to a wrist whose three twists have the other signs, and not to the p beside it." if row < 2 else ""
+    )
+    sign = f"Look at the sign before {before}."
+    if slips[row] == "two":
+        as_printed = "This is the entry as it is printed. An index is wrong in its first bracket, and then a sign."
+        says = {(5, -1): as_printed, (6, -1): f"S4 S6 is right. One slip is left.{wrist} {sign}"}
+    else:
+        both = f"An index is wrong here that is right as printed, in the first bracket. {sign}"
+        says = {(6, -1): f"This is the entry as it is printed.{wrist} {sign}", (5, -1): both}
+    says[5, 1] = f"The sign before {before} is right. One slip is left: an index in the first bracket."
+    return Part(
+        f"mended_{k + 1}",
+        f"Mend the {('first', 'second')[k]}",
+        2,
+        Formula(lambda arm, q: arm.T(0, 6, q)[row, 0], shape=(), symbols=SYMBOLS),
+        section="sec-puma560-entries",
+        arm=arm,
+        traps=[Trap(says[how], n_entry(row, *how)) for how in ((5, -1), (6, -1), (5, 1))],
+        kinematics=False,
+    )
+
+
+def fine(slips):
+    """The part that asks which entry is right as printed."""
+    says = {
+        "two": "{} holds two slips: mending one of them is not enough.",
+        "one": "in {} a sign is wrong: compare it with the entry of your product.",
+        "right": "{} is the entry of the product, sign for sign.",
+    }
+    because = {name: says[how].format(name) for name, how in zip(ENTRIES, slips, strict=True)}
+    return choice(
+        "fine", "Which entry is right as printed", ENTRIES[slips.index("right")], because, "sec-puma560-entries"
+    )
+
+
+def mirror(signs):
+    """The part that asks which change of sign makes the mirror image."""
+    because = {}
+    for change in signs:
+        if change in HAND:
+            because[change] = "no choice of frames changes this sign alone: it makes the mirror image of the arm."
+        elif change in FREE:
+            because[change] = f"the sign of {change} may change alone: that is {FREE[change]} reversed."
+        else:
+            because[change] = "they may change together: each alone is a mirror, and two undo each other."
+    (right,) = set(signs) & set(HAND)
+    return choice("mirror", "Which sign makes another arm", right, because, "sec-puma560-parity")
+
+
+def zeros(reversed_x):
+    """The part that asks which zeros an x axis reversed has moved."""
+    options = {k: f"{k} and {k + 1}" for k in range(1, 6)}
+    because = {"none": "a sign in one row is not as in yours, so an x axis is reversed, and that moves zeros."}
+    for k, option in options.items():
+        because[option] = (
+            f"x_{k} is reversed there: the signs of row {k} have changed, and joints {k} and {k + 1} gain half a turn."
+            if k == reversed_x
+            else f"that would reverse x_{k}, but row {k} of that table is like yours."
+        )
+    return choice("zeros", "Another book's zeros", options[reversed_x], because, "sec-puma560-corke")
 
 
 def exercise(given):
     """The exercise with these numbers."""
     bare, arm, at = given.arm, given.in_the_workshop, np.deg2rad(given.angles)
+    wrong_link, wrong_row, first_link = given.printed_links
     return Exercise(
         name="puma560",
         title="The PUMA 560",
@@ -194,48 +362,21 @@ def exercise(given):
                 )
                 for i in range(1, 5)
             ),
-            Part(
+            choice(
                 "slip",
                 "Which matrix is printed wrongly",
-                1,
-                Choice(
-                    {
-                        "first": "its determinant is -1, so it is a mirror and no link of any arm.",
-                        "second": "the second has determinant +1 and is a link of the arm: only its label is wrong.",
-                        "both": "one of the two has determinant +1, and is a link of the arm.",
-                    },
-                    right="first",
-                ),
-                section="sec-puma560-links",
+                "first" if first_link == wrong_link else "second",
+                {
+                    name: "its determinant is -1, so it is a mirror and no link of any arm."
+                    if i == wrong_link
+                    else f"the {name} has determinant +1 and is a link of the arm."
+                    for name, i in (("first", first_link), ("second", 11 - first_link))
+                }
+                | {"both": "one of the two has determinant +1, and is a link of the arm."},
+                "sec-puma560-links",
             ),
-            Part(
-                "A5",
-                "Mend A5",
-                1,
-                Formula(pose(4, 5), symbols=SYMBOLS, **EXACT),
-                section="sec-puma560-links",
-                arm=bare,
-                traps=[
-                    Trap(
-                        "This is the matrix as it is printed. Its determinant is -1: which row has the wrong sign?",
-                        link_4_5_printed,
-                    ),
-                    Trap(
-                        "Its determinant is +1, but its twist is -90°. Which turn about x leads from z_4 to z_5?",
-                        lambda arm, q: Rx(-np.pi / 2) @ Rz(q[4]),
-                    ),
-                ],
-                kinematics=False,
-            ),
-            Part(
-                "A6",
-                "A6 in symbols",
-                1,
-                Formula(pose(5, 6), symbols=SYMBOLS, **EXACT),
-                section="sec-puma560-links",
-                arm=bare,
-                kinematics=False,
-            ),
+            mended_link(5, wrong_row, bare, "A5 in symbols"),
+            mended_link(6, wrong_row, bare, "A6 in symbols"),
             Part(
                 "link",
                 "Any link, as a function",
@@ -303,40 +444,9 @@ def exercise(given):
                 ],
                 kinematics=False,
             ),
-            Part(
-                "fine",
-                "Which entry is right as printed",
-                1,
-                Choice(
-                    {
-                        "n_x": "n_x holds two slips: mending one of them is not enough.",
-                        "n_y": "in n_y a sign is wrong: compare it with the entry (2,1) of your product.",
-                        "n_z": "n_z is the entry (3,1) of the product, sign for sign.",
-                    },
-                    right="n_z",
-                ),
-                section="sec-puma560-entries",
-            ),
-            Part(
-                "n_x",
-                "Mend n_x",
-                2,
-                Formula(lambda arm, q: arm.T(0, 6, q)[0, 0], shape=(), symbols=SYMBOLS),
-                section="sec-puma560-entries",
-                arm=bare,
-                traps=n_traps(0),
-                kinematics=False,
-            ),
-            Part(
-                "n_y",
-                "Mend n_y",
-                2,
-                Formula(lambda arm, q: arm.T(0, 6, q)[1, 0], shape=(), symbols=SYMBOLS),
-                section="sec-puma560-entries",
-                arm=bare,
-                traps=n_traps(1),
-                kinematics=False,
-            ),
+            fine(given.slips),
+            mended(0, given.slips, bare),
+            mended(1, given.slips, bare),
             Part(
                 "classic_table",
                 "The classic table of the same arm",
@@ -345,36 +455,8 @@ def exercise(given):
                 section="sec-puma560-row-down",
                 arm=bare,
             ),
-            Part(
-                "mirror",
-                "Which sign makes another arm",
-                1,
-                Choice(
-                    {
-                        "a_2": "the sign of a_2 may change alone: that is x_2 reversed.",
-                        "alpha_4": "the sign of alpha_4 may change alone: that is x_4 reversed.",
-                        "d_3": "it makes the mirror image: the forearm stands on the other side of the shoulder.",
-                        "d_3 and d_4": "they may change together: each alone is a mirror, and two undo each other.",
-                    },
-                    right="d_3",
-                ),
-                section="sec-puma560-parity",
-            ),
-            Part(
-                "zeros",
-                "Another book's zeros",
-                1,
-                Choice(
-                    {
-                        "none": "at his zeros the forearm points up; at yours it hangs down.",
-                        "1": "joint 1 alone leaves the forearm hanging; at his zeros it points up.",
-                        "1 and 2": "he has reversed x_1: α_1 changes its sign, and joints 1 and 2 gain half a turn.",
-                        "3 and 6": "that would reverse x_3 and x_6; but Corke's third row is like yours.",
-                    },
-                    right="1 and 2",
-                ),
-                section="sec-puma560-corke",
-            ),
+            mirror(given.signs),
+            zeros(given.reversed_x),
             *last_pose(6, at, QUARTERS, "sec-puma560-product", at_quarters="sec-puma560-poses"),
             *with_gripper(arm, "T6", ("With a gripper", "Back from X"), at, np.deg2rad(given.hidden), **METRES),
         ],

@@ -5,11 +5,24 @@ from dataclasses import dataclass
 import numpy as np
 
 from dhlib import Chain, Revolute, Rx, Rz, Tx, Ty, Tz
-from dhlib.grading.asking import link_function, measured_at, pose, with_gripper
+from dhlib.grading.asking import choice, link_function, measured_at, pose, with_gripper
 from dhlib.grading.course.sources import lengths, matrix, number, row
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.forms import Formula, Frames, Numbers, Table
 from dhlib.grading.pictures import described, same_for_all
+
+#: The first column of T4, with its bracket left out, and the bracket that belongs there.
+PRINTED = {
+    "n_x": "cos(theta1) * cos(theta4) * {} - sin(theta1) * sin(theta4)",
+    "n_y": "sin(theta1) * cos(theta4) * {} + cos(theta1) * sin(theta4)",
+    "n_z": "-cos(theta4) * {}",
+}
+BRACKETS = {"n_x": "C23", "n_y": "C23", "n_z": "S23"}
+
+
+def other(bracket):
+    """The sine for the cosine, and the other way round."""
+    return {"C23": "S23", "S23": "C23"}[bracket]
 
 
 @dataclass(frozen=True)
@@ -27,6 +40,8 @@ class Given:
     tilt: float = -30
     #: The pose of the last part comes from these joints; the page does not say so.
     hidden: tuple[float, ...] = (40, 25, -65, 110)
+    #: Which entry of the printed column holds the bracket of another.
+    wrong: str = "n_y"
 
     @property
     def arm(self):
@@ -37,6 +52,11 @@ class Given:
             Revolute(d=self.forearm),
         ]
         return Chain(joints, "classic", name="Quickshot", unit="mm")
+
+    @property
+    def brackets(self):
+        """The bracket of each entry as it is printed."""
+        return {name: other(right) if name == self.wrong else right for name, right in BRACKETS.items()}
 
     @property
     def in_the_workshop(self):
@@ -73,6 +93,7 @@ def draw(lots):
             lots.one(f"hidden {i}", [*range(-last - 100, -last, 10), *range(10 + last, 110 + last, 10)])
             for i, last in enumerate((6, 1, 7, 4), 1)
         ),
+        wrong=lots.one("wrong", [name for name in BRACKETS if name != DEFAULT.wrong]),
     )
 
 
@@ -89,6 +110,16 @@ def cells(given):
             forearm=given.forearm,
         ),
         "angles": f"q = np.deg2rad({row(given.angles)})",
+        "printed": "\n".join(
+            [
+                "# The brackets of the slides: cos(theta2 + theta3) and sin(theta2 + theta3), written out",
+                "C23 = cos(theta2) * cos(theta3) - sin(theta2) * sin(theta3)",
+                "S23 = sin(theta2) * cos(theta3) + cos(theta2) * sin(theta3)",
+                "printed = {",
+                *(f'    "{name}": {PRINTED[name].format(bracket)},' for name, bracket in given.brackets.items()),
+                "}",
+            ]
+        ),
         "ends": f"""\
 # Lengths in millimetres, the tilt in radians
 corner = {row(given.corner)}
@@ -120,10 +151,64 @@ PRODUCT = Follows(LINKS, lambda A1, A2, A3, A4: A1 @ A2 @ A3 @ A4)
 FORMULAS = Follows([f"{link}_sym" for link in LINKS], lambda A1, A2, A3, A4: A1 @ A2 @ A3 @ A4)
 
 
-def slides_entry(arm, q):
-    """Entry (2, 1) as the slides print it."""
-    s, c = np.sin(q), np.cos(q)
-    return s[0] * c[3] * (s[1] * c[2] + c[1] * s[2]) + c[0] * s[3]
+def entry(name, bracket):
+    """An entry of the first column, with one bracket or the other of some sum of angles."""
+
+    def quantity(arm, q):
+        s, c, held = np.sin(q), np.cos(q), bracket(q)
+        return {
+            "n_x": c[0] * c[3] * held - s[0] * s[3],
+            "n_y": s[0] * c[3] * held + c[0] * s[3],
+            "n_z": -c[3] * held,
+        }[name]
+
+    return quantity
+
+
+def mending(name):
+    """The part that asks for the entry that is printed wrongly."""
+    right = BRACKETS[name]
+    of, wave = {
+        "C23": (np.cos, "cos(α + β) = cos α cos β − sin α sin β"),
+        "S23": (np.sin, "sin(α + β) = sin α cos β + cos α sin β"),
+    }[right]
+    misprint = np.sin if of is np.cos else np.cos
+    mate = {"n_x": "n_y", "n_y": "n_x"}.get(name)
+    if mate:
+        says = f"This is {mate}: turning the base by a quarter turn makes the one into the other."
+        confused = Trap(says, entry(mate, lambda q: of(q[1] + q[2])))
+    else:
+        confused = Trap("n_z has the other sign: θ2 and θ3 lower the arm.", entry(name, lambda q: -of(q[1] + q[2])))
+    return Part(
+        "mended",
+        "Mend the slip",
+        2,
+        Formula(lambda arm, q: arm.T(0, 4, q)["xyz".index(name[-1]), 0], shape=(), symbols=SYMBOLS),
+        section="sec-quickshot-slip",
+        traps=[
+            Trap(
+                f"This is the entry as it is printed. Its bracket is {other(right)}; which sum belongs there?",
+                entry(name, lambda q: misprint(q[1] + q[2])),
+            ),
+            confused,
+            Trap(
+                f"The bracket is {right} with a plus sign between the angles; {wave}.",
+                entry(name, lambda q: of(q[1] - q[2])),
+            ),
+        ],
+        kinematics=False,
+    )
+
+
+def slip(name):
+    """The part that asks which entry it is."""
+    because = {
+        each: "the printed n has not the length 1, and the other two entries agree with the product."
+        if each == name
+        else f"{each} is right as printed: compare it with your own T4, entry by entry."
+        for each in BRACKETS
+    }
+    return choice("slip", "Find the slip", name, because, "sec-quickshot-slip")
 
 
 def exercise(given):
@@ -192,42 +277,8 @@ def exercise(given):
                 follows=FORMULAS,
                 kinematics=False,
             ),
-            Part(
-                "slip",
-                "Find the slip",
-                1,
-                Choice(
-                    {
-                        "n_x": "n_x is right as printed: compare it with your own T4, entry by entry.",
-                        "n_y": "the printed n has no length of 1, and the other two entries agree with the product.",
-                        "n_z": "n_z is right as printed: it is -S23 C4, written out.",
-                    },
-                    right="n_y",
-                ),
-                section="sec-quickshot-slip",
-            ),
-            Part(
-                "n_y",
-                "Mend the slip",
-                2,
-                Formula(lambda arm, q: arm.T(0, 4, q)[1, 0], shape=(), symbols=SYMBOLS),
-                section="sec-quickshot-slip",
-                traps=[
-                    Trap(
-                        "This is the entry as it is printed. Its bracket is S23; which sum of angles belongs there?",
-                        slides_entry,
-                    ),
-                    Trap(
-                        "This is n_x: in n_y the sine of θ1 stands where n_x has the cosine.",
-                        lambda arm, q: arm.T(0, 4, q)[0, 0],
-                    ),
-                    Trap(
-                        "The bracket is C23 with a plus sign; cos(α + β) = cos α cos β - sin α sin β.",
-                        lambda arm, q: np.sin(q[0]) * np.cos(q[3]) * np.cos(q[1] - q[2]) + np.cos(q[0]) * np.sin(q[3]),
-                    ),
-                ],
-                kinematics=False,
-            ),
+            slip(given.wrong),
+            mending(given.wrong),
             *with_gripper(arm, "T4", ("Base and tool", "Back from X"), at, np.deg2rad(given.hidden)),
         ],
     )

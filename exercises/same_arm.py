@@ -31,6 +31,8 @@ class Given:
 
     links: tuple[float, ...] = (0.5, 0.3, 0.2)
     last: float = 0.05
+    #: Which links stand in the first table, with their signs.
+    first: tuple[int, int, int] = (2, 1, 3)
     #: Which link of C is turned back, and which axis of D is turned over.
     back: int = 2
     over: int = 2
@@ -56,6 +58,11 @@ class Given:
     @property
     def planar_rows(self):
         return [[0, 0, a, 0] for a in self.links]
+
+    @property
+    def first_links(self):
+        """The lengths in the first table."""
+        return [np.sign(link) * self.links[abs(link) - 1] for link in self.first]
 
     @property
     def stanford_rows(self):
@@ -90,6 +97,10 @@ class Given:
 DEFAULT = Given()
 
 
+#: Parts with one answer for everybody: zeros and senses that no length changes.
+SAME_FOR_ALL = ("to_stanford",)
+
+
 def draw(lots):
     """Other arms of these kinds, and other changes: no length is that of the book."""
     d3 = lots.one("d3", [0.12, 0.13, 0.14, 0.16, 0.17, 0.18])
@@ -101,6 +112,7 @@ def draw(lots):
             lots.one("third link", [0.21, 0.22, 0.23, 0.24]),
         ),
         last=lots.one("last", [0.06, 0.07, 0.08, 0.09]),
+        first=lots.one("first", [(2, 1, 3), (3, 2, 1), (1, 3, 2), (-1, -2, 3), (-1, 2, -3), (1, -2, -3)]),
         back=lots.one("back", [1, 2]),
         over=lots.one("over", [2, 3]),
         stanford=(
@@ -165,10 +177,10 @@ def as_call(**numbers):
 
 def cells(given):
     """The given cells of the notebook."""
-    l1, l2, l3 = given.links
+    l1, l2, _ = given.links
     planar = {
         "A": given.planar_rows,
-        "first": [[0, 0, a, 0] for a in (l2, l1, l3)],
+        "first": [[0, 0, a, 0] for a in given.first_links],
         "B": [[0, 0, a, 0] for a in (l1, l2, given.last)],
         "C": turned_back(given),
         "D": turned_over(given),
@@ -358,6 +370,7 @@ TABLES = {
 def exercise(given):
     """The exercise with these numbers."""
     (l1, l2, l3), (_, d2, _), a3 = given.links, given.stanford, given.beside
+    a1, a2, _ = map(abs, given.first_links)
     back, over, x, first, axes = given.back, given.over, given.x_of_p, given.x_of_q, given.axes_of_r
     planar, stanford, puma = given.planar_rows, given.stanford_rows, given.puma_rows
     P, Q, R = map(given.flipped, given.signs)
@@ -382,12 +395,16 @@ def exercise(given):
         parts=[
             kind_of(
                 "exchanged",
-                "Two links exchanged",
-                "another",
+                "Other lengths, other signs",
+                "same" if (a1, a2) == (l1, l2) else "another",
                 "sec-placing-physical",
-                same="the distance between axes 1 and 2 belongs to the arm: no choice of frames changes it.",
-                mirror="in a mirror lengths stay as they are, and here the first distance is another.",
-                another=f"the distances between the axes are {l2:g} and {l1:g}, in place of {l1:g} and {l2:g}.",
+                same="x axes are turned round, and the distances between the axes are what they were."
+                if (a1, a2) == (l1, l2)
+                else "the distances between the axes belong to the arm: no choice of frames changes them.",
+                mirror="in a mirror the distances stay, and axes that are all parallel look the same in it.",
+                another="the distances between the axes are what makes this arm. Are they others?"
+                if (a1, a2) == (l1, l2)
+                else f"the distances between the axes are {a1:g} and {a2:g}, in place of {l1:g} and {l2:g}.",
             ),
             Part(
                 "H",

@@ -8,6 +8,7 @@ from dhlib import Chain, Rx, Rz, Tx, Ty, Tz, robots
 from dhlib.grading.asking import (
     EXACT,
     METRES,
+    choice,
     joint_values,
     last_pose,
     link_function,
@@ -23,6 +24,14 @@ from dhlib.grading.pictures import described, same_for_all
 
 COBRA = robots.cobra600("classic")
 KINDS = COBRA.kinds
+#: Faults of a program that computes T4: how far the hand then goes when q3 grows by 1, along x and up, and how far it
+#: turns; and what that looks like.
+FAULTS = {
+    "joint 3 revolute": ((0, 0, -1), "the hand turns, and stays at its height"),
+    "alpha_2 = 0": ((0, 1, 0), "the hand rises where it should sink, and does not turn"),
+    "q3 in a_3": ((1, 0, 0), "the hand moves outwards, and stays at its height"),
+    "q3 in centimetres": ((0, -0.01, 0), "the hand sinks, but far too little"),
+}
 
 
 @dataclass(frozen=True)
@@ -41,6 +50,8 @@ class Given:
     tried: tuple[int, int, int] = (1, 1, 1)
     #: The pose of the last part comes from these joints; the page does not say so.
     hidden: tuple[float, ...] = (-25, 65, 0.08, 50)
+    #: What is wrong in somebody's program.
+    fault: str = "joint 3 revolute"
 
     @property
     def arm(self):
@@ -60,6 +71,10 @@ class Given:
 
 
 DEFAULT = Given()
+
+
+#: Parts with one answer for everybody: a sum of joint angles, with no length in it.
+SAME_FOR_ALL = ("heading",)
 
 
 def draw(lots):
@@ -90,6 +105,7 @@ def draw(lots):
         missing=lots.one("missing", [0.062, 0.069, 0.073, 0.078, 0.083, 0.091]),
         tried=lots.one("tried", [(1, 1, 1), (-1, -1, 1), (-1, 1, -1)]),
         hidden=(h1, h2, lots.one("hidden slide", [0.05, 0.06, 0.07, 0.09, 0.1]), h4),
+        fault=lots.one("fault", [fault for fault in FAULTS if fault != DEFAULT.fault]),
     )
 
 
@@ -115,6 +131,7 @@ tilt = np.deg2rad({number(tilt)})""",
         "missing": f"""\
 missing = {number(given.missing)}  # metres
 tried = {{"d_2": {d_2}missing, "d_3": {d_3}missing, "d_4": {d_4}missing}}""",
+        "calls": calls(given),
         "measured": matrix("X_measured", measured, decimals=(4, 4, 4, 5)),
     }
 
@@ -149,6 +166,25 @@ def wandering(given):
         for place, sense in up.items()
     }
     return because, right
+
+
+def calls(given):
+    """What a faulty program gives for q3 = 0.1 and 0.2, as source."""
+    (out, up, turn), _ = FAULTS[given.fault]
+    lines = [
+        f"    ({row([given.a1 + given.a2 + out * q3, 0, given.d1 + up * q3])}, {number(turn * q3)}),  # q3 = {q3}"
+        for q3 in (0.1, 0.2)
+    ]
+    return "\n".join(["# Position in metres, and angle about the vertical in radians", "calls = [", *lines, "]"])
+
+
+def treated(fault):
+    """The part that asks what went wrong."""
+    because = {
+        each: f"then {looks}" + (": so it does." if each == fault else ". Compare the two calls.")
+        for each, (_, looks) in FAULTS.items()
+    }
+    return choice("treated", "What went wrong", fault, because, "sec-prismatic-trap-revolute")
 
 
 def heading(sign2=1, sign4=-1):
@@ -240,21 +276,7 @@ def exercise(given):
                 Choice(*wandering(given)),
                 section="sec-prismatic-wander",
             ),
-            Part(
-                "treated",
-                "What went wrong",
-                1,
-                Choice(
-                    {
-                        "angles in degrees": "only q3 was changed, and it is no angle.",
-                        "joint 3 revolute": "the hand turned and stayed at its height; where a joint slides, it is the "
-                        "other way round.",
-                        "alpha_2 = 0": "then the hand would rise where it should sink, but it would not turn.",
-                    },
-                    right="joint 3 revolute",
-                ),
-                section="sec-prismatic-trap-revolute",
-            ),
+            treated(given.fault),
             *with_gripper(arm, "T4", ("Base and tool", "Back from X"), at, joint_values(KINDS, given.hidden), **METRES),
         ],
     )

@@ -1,19 +1,63 @@
 """What the exercise on the Stanford arm asks, and how it is marked."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
-from dhlib import Chain, robots
-from dhlib.grading.asking import EXACT, joint_values, last_pose, link_function, pose, slide_converted
-from dhlib.grading.course.sources import lengths, number, row
+from dhlib import Axis, Chain, place_frames, robots, same_mechanism
+from dhlib.grading.asking import (
+    EXACT,
+    choice,
+    holding,
+    joint_values,
+    last_pose,
+    link_function,
+    pose,
+    slide_converted,
+    which_holds,
+)
+from dhlib.grading.course.sources import lengths, lettered, number, row
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Frames, Numbers, Table
+from dhlib.grading.forms import Formula, Frames, Numbers, Table
 from dhlib.grading.pictures import described, same_for_all
 from dhlib.grading.retelling import altered
 
 STANFORD = robots.stanford("classic")
 KINDS = STANFORD.kinds
+#: Which z is which axis, by the numbering of each convention.
+CLAIMS = {
+    f"axis {i}{', the slide,' if i == 3 else ''} is z_{k} in the {name} frames": (
+        k == right,
+        "a classic row begins with the turn and the slide, about and along the old z: z_i-1 is axis i."
+        if name == "classic"
+        else "a modified row ends with the turn and the slide, about and along the new z: z_i is axis i.",
+    )
+    for i in (2, 3, 5)
+    for name, right in (("classic", i - 1), ("modified", i))
+    for k in (i - 1, i)
+}
+#: Changes in the classic table: row and column, and the new value.
+CHANGES = {
+    "d_2 turned round": ((2, "d"), lambda given: -given.d2),
+    "alpha_1 turned round": ((1, "alpha"), lambda given: np.pi / 2),
+    "alpha_2 turned round": ((2, "alpha"), lambda given: -np.pi / 2),
+    "d_1 longer": ((1, "d"), lambda given: given.d1 + 0.05),
+    "d_2 longer": ((2, "d"), lambda given: given.d2 + 0.05),
+    "alpha_4 smaller": ((4, "alpha"), lambda given: -np.pi / 3),
+    "a_1 there": ((1, "a"), lambda given: 0.05),
+}
+#: Which axis is drawn elsewhere, and how far away.
+MOVED = [
+    (3, (0.3, 0, 0)),
+    (3, (0.2, 0, 0)),
+    (3, (0, 0.1, 0)),
+    (3, (0, 0, 0.25)),
+    (2, (0, 0.2, 0)),
+    (5, (0.15, 0, 0)),
+    (4, (0, 0.05, 0)),
+    (5, (0, 0.06, 0)),
+]
 
 
 @dataclass(frozen=True)
@@ -25,6 +69,15 @@ class Given:
     d6: float = STANFORD.joints[5].d
     #: Joint values, of which the third is a slide.
     values: tuple[float, ...] = (30, 60, 0.5, 40, -50, 70)
+    claims: tuple[str, ...] = (
+        "axis 3, the slide, is z_3 in the classic frames",
+        "axis 3, the slide, is z_2 in the modified frames",
+        "axis 3, the slide, is z_2 in the classic frames",
+        "axis 5 is z_4 in the modified frames",
+    )
+    #: What somebody changes in the classic table, and which axis somebody else draws elsewhere.
+    change: str = "d_2 turned round"
+    moved: tuple[int, tuple[float, ...]] = (3, (0.3, 0, 0))
 
     @property
     def arm(self):
@@ -34,6 +87,10 @@ class Given:
 
 
 DEFAULT = Given()
+
+
+#: Parts with one answer for everybody: the slide has no length but its variable.
+SAME_FOR_ALL = ("A3", "A3_modified")
 
 
 def draw(lots):
@@ -46,6 +103,9 @@ def draw(lots):
         d2=lots.one("d2", [0.127, 0.133, 0.139, 0.145, 0.163, 0.169, 0.175]),
         d6=lots.one("d6", [0.217, 0.224, 0.231, 0.238, 0.245, 0.252]),
         values=(first, second, lots.one("slide", [0.43, 0.44, 0.46, 0.47, 0.53, 0.54, 0.56]), *wrist),
+        claims=lots.one_right("claims", holding(CLAIMS), holding(CLAIMS, False)),
+        change=lots.one("change", list(CHANGES)[1:]),
+        moved=lots.one("moved", list(MOVED)[1:]),
     )
 
 
@@ -58,7 +118,18 @@ def cells(given):
 # The joint vector: angles in radians, the slide in metres
 q = np.deg2rad({row((first, second, 0, *wrist))})
 q[2] = {number(slide)}""",
+        "claims": lettered("claims", given.claims),
+        "change": changed_number(given),
+        "moved": f"moved, way = {given.moved[0]}, {row(given.moved[1])}",
     }
+
+
+def changed_number(given):
+    """Which number of the classic table somebody writes otherwise, as source."""
+    (i, column), value = CHANGES[given.change]
+    quarters = {90: "pi / 2", -90: "-pi / 2", -60: "-pi / 3"}
+    new = quarters[round(np.rad2deg(value(given)))] if column == "alpha" else number(value(given))
+    return f'row, column, value = {i}, "{column}", {new}'
 
 
 @same_for_all
@@ -111,6 +182,71 @@ def wrist(given, d2_sign=1, cosine_for_sine=False, with_foot=True):
     return p
 
 
+@cache
+def keeps_the_arm(change):
+    """Whether a change in the table leaves the same arm: that does not depend on the lengths."""
+    (i, column), value = CHANGES[change]
+    return bool(same_mechanism(altered(DEFAULT.arm, i, **{column: value(DEFAULT)}), DEFAULT.arm))
+
+
+def shoulder(given):
+    """The part that asks what a change in the table makes of the arm."""
+    same = keeps_the_arm(given.change)
+    because = {
+        "the same arm": "it takes nothing but another zero or sense of joints, or another base."
+        if same
+        else "the distances and angles between neighbouring axes: is one of them another?",
+        "the mirror image": "this arm is its own mirror image: there is a turn that makes the one into the other.",
+        "another arm": "try it: turn joint 1 by half a turn, let joint 2 count the other way, put the base elsewhere."
+        if same
+        else f"a size has changed that lies between axes: that of {given.change.split()[0]}.",
+    }
+    return choice(
+        "shoulder", "Another number", "the same arm" if same else "another arm", because, "sec-prismatic-mirror"
+    )
+
+
+def drawn_axes(moved=0, way=(0, 0, 0)):
+    """The table of the arm by its axes, one of which is drawn elsewhere."""
+    up, left, forward = (0, 0, 1), (0, 1, 0), (1, 0, 0)
+    wrist = (0, DEFAULT.d2, DEFAULT.d1)
+    lines = [((0, 0, 0), up), ((0, 0, DEFAULT.d1), left), (wrist, up), (wrist, up), (wrist, forward), (wrist, up)]
+    axes = [
+        Axis(np.add(point, way if i == moved else 0), direction, "P" if i == 3 else "R")
+        for i, (point, direction) in enumerate(lines, 1)
+    ]
+    placed, _ = place_frames(axes, end=DEFAULT.arm.frames(np.zeros(6))[-1])
+    return placed
+
+
+@cache
+def drawn_elsewhere(moved, way):
+    """What becomes of the table if an axis is drawn elsewhere: that does not depend on the lengths."""
+    before, after = drawn_axes(), drawn_axes(moved, way)
+    lengths = [np.array([[joint.d, joint.a] for joint in arm.joints], dtype=float) for arm in (before, after)]
+    if not same_mechanism(after, before):
+        return "another arm"
+    return f"the same arm, {'the same' if np.allclose(*lengths) else 'another'} table"
+
+
+def place(given):
+    """The part that asks what becomes of the table if an axis is drawn elsewhere."""
+    right = drawn_elsewhere(*given.moved)
+    because = {
+        "another arm": "an axis that turns is a line in the metal: drawn beside itself, it is another."
+        if right == "another arm"
+        else "is what was drawn elsewhere a line in the metal, and did it leave this line?",
+        "the same arm, another table": "only the direction of a sliding axis is physical; the wrist behind it stands "
+        "where it stood."
+        if right == "the same arm, another table"
+        else "a line pushed along itself is the same line; and one that turns, pushed aside, is another.",
+        "the same arm, the same table": "a line pushed along itself is the line that it was, and so are its normals."
+        if right == "the same arm, the same table"
+        else "its normals with the axes beside it change, and with them a and d.",
+    }
+    return choice("place", "The place of an axis", right, because, "sec-prismatic-direction")
+
+
 def exercise(given):
     """The exercise with these numbers."""
     arm, at = given.arm, joint_values(KINDS, given.values)
@@ -128,25 +264,7 @@ def exercise(given):
             ),
             Part("table", "The classic table", 4, Table("classic"), section="sec-prismatic-row"),
             Part("modified_table", "The modified table", 3, Table("modified"), section="sec-both-columns"),
-            Part(
-                "axis",
-                "Along which axis it slides",
-                1,
-                Choice(
-                    {
-                        "z_2 in both": "in the modified convention the slide comes last in a row, along the new z."
-                        " Here that is z_3.",
-                        "z_3 in both": "in the classic convention the slide comes first in a row, along the old z."
-                        " Here that is z_2.",
-                        "classic z_2, modified z_3": "a classic row begins with the turn and the slide, and a "
-                        "modified row ends with them.",
-                        "classic z_3, modified z_2": "it is the other way round: see where the slide stands among "
-                        "the four steps.",
-                    },
-                    right="classic z_2, modified z_3",
-                ),
-                section="sec-prismatic-row",
-            ),
+            which_holds("axis", "Which z is which axis", given.claims, CLAIMS, "sec-prismatic-row"),
             Part(
                 "A3",
                 "The slide, classic",
@@ -244,37 +362,8 @@ def exercise(given):
                 ],
                 kinematics=False,
             ),
-            Part(
-                "shoulder",
-                "The shoulder on the other side",
-                1,
-                Choice(
-                    {
-                        "the same arm": "joint 2 counts the other way, joints 1 and 4 from half a turn further.",
-                        "the mirror image": "it is that, but this arm is its own mirror image: there is a turn that "
-                        "makes the one into the other.",
-                        "another arm": "try it: turn joint 1 by half a turn, and let joint 2 count the other way.",
-                    },
-                    right="the same arm",
-                ),
-                section="sec-prismatic-mirror",
-            ),
-            Part(
-                "place",
-                "The place of the slide",
-                1,
-                Choice(
-                    {
-                        "another arm": "all points of the boom move along parallel lines, and none of these is "
-                        "marked in the metal.",
-                        "the same arm, another table": "only the direction of a sliding axis is physical; "
-                        "the wrist behind it stands where it stood.",
-                        "the same arm, the same table": "its normals with axes 2 and 4 change, and with them a and d.",
-                    },
-                    right="the same arm, another table",
-                ),
-                section="sec-prismatic-direction",
-            ),
+            shoulder(given),
+            place(given),
         ],
     )
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from dhlib import Chain, Revolute, Rx, Ry, Rz, Tx, Ty, Tz, inverse
-from dhlib.grading.asking import constant, reasoned
-from dhlib.grading.course.sources import matrix, number, row
+from dhlib.grading.asking import choice, constant, holding, reasoned
+from dhlib.grading.course.sources import matrix, number, row, strings
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap
-from dhlib.grading.forms import Choice, Formula, Function, Numbers
+from dhlib.grading.forms import Formula, Function, Numbers
 from dhlib.grading.pictures import same_for_all
 from dhlib.scene import Scene, beside_each_other
 from dhlib.view import VIEW
@@ -21,6 +21,16 @@ KINDS = {
     "mirror": [[0.8, 0, 0.6], [0.36, 0.8, -0.48], [0.48, -0.6, -0.64]],
     "stretched": [[1.6, -0.3, 0], [1.2, 0.4, 0], [0, 0, 1]],
     "slanting": [[0.8, 0, 0.6], [0.6, 0.6, -0.8], [0, 0.8, 0]],
+}
+
+#: Pairs of atomic transforms: whether they may change places, and what to say of it.
+PAIRS = {
+    "Rz Tz": (True, "a screw may be turned and then pushed, or pushed and then turned."),
+    "Rx Tx": (True, "a screw may be turned and then pushed, or pushed and then turned."),
+    "Tz Tx": (True, "ways add up, whichever is gone first: no turn stands between them."),
+    "Rz Tx": (False, "turning and then going leads elsewhere than going and then turning."),
+    "Rx Rz": (False, "two turns about different axes do not commute: try quarter turns of a book."),
+    "Tz Rx": (False, "the turn about x bends the way along z aside, if it comes first."),
 }
 
 
@@ -40,6 +50,7 @@ class Given:
     cube: tuple[float, float] = (0.6, 0.8)
     cube_at: tuple[float, ...] = (150, 90, 850)
     order: tuple[str, ...] = tuple(KINDS)
+    pairs: tuple[str, ...] = ("Rz Tx", "Rx Rz", "Rz Tz", "Tz Rx")
     places: tuple[tuple[float, ...], ...] = ((-30, 500, 75), (50, 20, 310), (75, -20, 140), (200, 0, -35))
 
     @property
@@ -66,6 +77,10 @@ def pose(rotation, at):
 DEFAULT = Given()
 
 
+#: Parts with one answer for everybody: the general transforms, and a function for any pose.
+SAME_FOR_ALL = ("Rz_sym", "Tz_sym", "Tx_sym", "Rx_sym", "invert")
+
+
 def draw(lots):
     """Another hall, another hand, another camera; the four matrices in another order and at other places."""
     (c, s), (cx, sx) = lots.some("hand", QUARTER, 2)
@@ -85,6 +100,7 @@ def draw(lots):
         cube=lots.one("cube", [(0.28, 0.96), (0.96, 0.28), (0.8, 0.6)]),
         cube_at=tuple(lots.one(f"cube {k}", range(low, low + 90, 10)) for k, low in enumerate((110, 120, 760))),
         order=tuple(lots.shuffled("order", tuple(KINDS))),
+        pairs=lots.one_right("pairs", [p for p in holding(PAIRS) if p not in DEFAULT.pairs], holding(PAIRS, False)),
         places=tuple(tuple(lots.some(f"place {k}", range(-245, 250, 30), 3)) for k in range(4)),
     )
 
@@ -98,6 +114,7 @@ def cells(given):
     o, a = (f"np.array({row(column)}) / 3" for column in given.columns)
     return {
         "way": f"turn = np.deg2rad({number(given.turn)})\nway = {number(given.way)}  # millimetres",
+        "pairs": strings("pairs", given.pairs),
         "hand": matrix("hand", given.HAND),
         "columns": f"o_left = {o}\na_left = {a}",
         "ahead": f"ahead = {number(given.ahead)}  # millimetres",
@@ -283,20 +300,12 @@ def exercise(given):
             atomic("Rx", Rx, "alpha", [("y", Ry), ("z", Rz)]),
             product("go_turn", "Go, then turn", 1, given.turn, go, Rz),
             product("turn_go", "Turn, then go", 1, given.turn, Rz, go),
-            Part(
+            choice(
                 "pair",
                 "Which two may change places",
-                1,
-                Choice(
-                    {
-                        "Rz Tx": "turning and then going leads elsewhere than going and then turning.",
-                        "Rx Rz": "two turns about different axes do not commute: try quarter turns of a book.",
-                        "Rz Tz": "a screw may be turned and then pushed, or pushed and then turned.",
-                        "Tz Rx": "the turn about x bends the way along z aside, if it comes first.",
-                    },
-                    right="Rz Tz",
-                ),
-                section="sec-atomic",
+                next(pair for pair in given.pairs if PAIRS[pair][0]),
+                {pair: PAIRS[pair][1] for pair in given.pairs},
+                "sec-atomic",
             ),
             product("fixed", "About fixed axes", 2, given.turn, go, Rz, lambda turn: Rx(np.pi / 2)),
             read_off(HAND, "approach", "Where the hand points", 2),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from string import ascii_lowercase
 from typing import Any
 
 import numpy as np
@@ -139,6 +140,33 @@ def which_lengths(found: Callable[[str], FloatArray], sets: Sequence[str], right
 def choice(part: str, title: str, right: str, because: Mapping[str, str], section: str, points: float = 1) -> Part:
     """One of several options; the words say why, or what to look at."""
     return Part(part, title, points, Choice(because, right), section=section)
+
+
+Claims = Mapping[str, tuple[bool, str]]
+"""Statements: whether each holds, and what to say to whoever chose it."""
+
+
+def holding(claims: Claims, holds: bool = True) -> list[str]:
+    """The statements that hold, or those that do not.
+
+    Examples
+    --------
+    >>> holding({"it turns": (True, "Yes."), "it slides": (False, "No.")}, False)
+    ['it slides']
+    """
+    return [claim for claim, (right, _) in claims.items() if right is holds]
+
+
+def which_holds(part: str, title: str, shown: Sequence[str], claims: Claims, section: str, points: float = 1) -> Part:
+    """Which one of the statements shown holds, by its letter."""
+    letters = dict(zip(ascii_lowercase, shown, strict=False))
+    (right,) = (letter for letter, claim in letters.items() if claims[claim][0])
+    return choice(part, title, right, {letter: claims[claim][1] for letter, claim in letters.items()}, section, points)
+
+
+def reasons_by_letter(order: Sequence[str], says: Mapping[str, str]) -> dict[str, str]:
+    """What to say of each reason, by the letter under which the page lists it."""
+    return {letter: says[reason] for letter, reason in zip(ascii_lowercase, order, strict=False)}
 
 
 def reasoned(

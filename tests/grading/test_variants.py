@@ -14,8 +14,8 @@ from dhlib.grading.answers import read_answer
 from dhlib.grading.course.editions import HOW
 from dhlib.grading.course.lots import Lots
 from dhlib.grading.course.papers import NotAssigned, as_metadata, check_tag, load_paper, make_tag, read_tag
-from dhlib.grading.course.variants import Variants, fill
-from dhlib.grading.forms import Valued
+from dhlib.grading.course.variants import Variants, fill, load_variant
+from dhlib.grading.forms import Choice, Valued
 from dhlib.grading.marking import Marker, agree
 
 ROOT = Path(__file__).parents[2]
@@ -81,6 +81,36 @@ def test_the_public_solution_earns_next_to_nothing_of_what_has_numbers(name, var
         assert {part for part in other if marks[part].verdict == "right"} == set()
 
 
+@pytest.mark.parametrize("name", VARYING)
+def test_every_answer_is_the_students_own_but_for_a_short_list(name, variants):
+    """Each part either varies within a dozen students, or stands in the list of its exercise's file, which says why."""
+    answers = {}
+    for k in range(12):
+        for part in variants[name].of(KEY, f"student {k}").exercise.parts:
+            answers.setdefault(part.id, set()).add(answer_of(part))
+    assert sorted(part for part, told in answers.items() if len(told) == 1) == sorted(variants[name].same_for_all)
+    exercise = variants[name].of().exercise
+    assert not [part for part in variants[name].same_for_all if isinstance(exercise.part(part).asks, Choice)]
+
+
+def answer_of(part):
+    """The right answer to a part, as something to compare."""
+    match part.asks:
+        case Valued():
+            return np.round(part.asks.values(part.chain), 9).tobytes()
+        case Choice():
+            return part.asks.right, *sorted(getattr(part.asks, "needed", ()))
+    return part.chain.joints
+
+
+def test_a_part_that_does_not_vary_is_seen():
+    """Negative control of the above."""
+    formula, table = (load_variant("puma560").exercise.part(name) for name in ("A1", "table"))
+    other = load_variant("puma560", None, KEY, "s1").exercise
+    assert answer_of(formula) == answer_of(other.part("A1"))
+    assert answer_of(table) != answer_of(other.part("table"))
+
+
 def differs(part, of_the_book):
     """Whether a part has another answer than in the book."""
     if isinstance(part.asks, Valued):
@@ -102,11 +132,16 @@ def test_no_variant_is_luckier_than_the_book(name, variants):
                 continue
             assert part.asks.shape == default.asks.shape
             right, theirs = part.asks.values(part.chain), default.asks.values(default.chain)
-            assert np.sum(np.abs(right) < 1e-9) <= np.sum(np.abs(theirs) < 1e-9), part.id
+            assert always_zero(right) <= always_zero(theirs), part.id
             for trap, same in zip(part.traps, default.traps, strict=True):
                 told, known = told_by(trap, part), told_by(same, default)
                 if not agree(known, theirs, default.asks.tolerances):
                     assert not agree(told, right, part.asks.tolerances), (part.id, trap.says)
+
+
+def always_zero(values):
+    """How many entries are zero at every probe."""
+    return np.sum(np.all(np.abs(values) < 1e-9, axis=0))
 
 
 def told_by(trap, part):

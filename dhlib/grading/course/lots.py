@@ -79,6 +79,18 @@ class Lots:
             drawn.append(left.pop(number % len(left)))
         return drawn
 
+    def one_right(self, name: str, right: Sequence[Item], wrong: Sequence[Item], count: int = 4) -> tuple[Item, ...]:
+        """Options for a choice, in any order: one of the right ones, and wrong ones.
+
+        Examples
+        --------
+        >>> options = Lots(b"key", "s1", "planar").one_right("trial", ["right", "too"], ["wrong", "false", "no"], 3)
+        >>> len(options), len({"right", "too"} & set(options))
+        (3, 1)
+        """
+        drawn = [self.one(f"{name}, right", right), *self.some(f"{name}, wrong", wrong, count - 1)]
+        return tuple(self.shuffled(f"{name}, order", drawn))
+
     def shuffled(self, name: str, options: Sequence[Item]) -> list[Item]:
         """All of some options, in another order."""
         return self.some(name, options, len(options))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from string import ascii_lowercase
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,6 +34,35 @@ def lengths(unit: str, **values: float) -> str:
     return "\n".join(
         [f"# Lengths of the arm, in {unit}", *(f"{name} = {number(value)}" for name, value in values.items())]
     )
+
+
+def strings(name: str, texts: Sequence[str]) -> str:
+    """A statement that makes a list of texts, one a line.
+
+    Examples
+    --------
+    >>> print(strings("pairs", ["Rz Tz", "Rx Tz"]))
+    pairs = [
+        "Rz Tz",
+        "Rx Tz",
+    ]
+    """
+    return "\n".join([f"{name} = [", *(f'    "{text}",' for text in texts), "]"])
+
+
+def lettered(name: str, texts: Sequence[str]) -> str:
+    """A statement that makes a dictionary of texts by the letters that an answer is to name.
+
+    Examples
+    --------
+    >>> print(lettered("claims", ["it turns", "it slides"]))
+    claims = {
+        "a": "it turns",
+        "b": "it slides",
+    }
+    """
+    pairs = zip(ascii_lowercase, texts, strict=False)
+    return "\n".join([f"{name} = {{", *(f'    "{letter}": "{text}",' for letter, text in pairs), "}"])
 
 
 def row(values: ArrayLike, decimals: int = 6) -> str:

@@ -7,6 +7,7 @@ The file of an exercise that has variants offers
   ``EXERCISE = exercise(DEFAULT)``;
 * ``cells(given)``, the source of each given cell of the notebook, by its part;
 * ``draw(lots)``, which draws the given numbers of one student from `Lots`;
+* ``SAME_FOR_ALL``, the parts whose answer is one for everybody, if there are such;
 * ``figure(given)``, if the notebook has a given cell ``figure``: what stands in it (see `pictures`).
 """
 
@@ -98,6 +99,11 @@ class Variants:
     def vary(self) -> bool:
         """Whether students can get numbers of their own."""
         return all(hasattr(self._module, function) for function in ("draw", "exercise", "cells"))
+
+    @property
+    def same_for_all(self) -> tuple[str, ...]:
+        """The parts whose answer no draw changes."""
+        return tuple(getattr(self._module, "SAME_FOR_ALL", ()))
 
     def of(self, key: bytes | None = None, student: str | None = None) -> Variant:
         """The variant of a student; without one, that of the book."""
