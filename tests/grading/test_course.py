@@ -338,7 +338,7 @@ def test_a_wrong_form_is_said(forms, part, answer, words):
         ("table", Chain([Revolute(a=1)] * 4, "classic")),
         ("table", [["q1", 1, 2, 3], ["q2", 1, 2, 3], ["q3", 1, 2, 3], ["q4", 1, 2, 3]]),
         ("table", [[0, 1, 2, 3]] * 4),
-        ("n_y", 7),
+        ("mended", 7),
     ],
 )
 def test_a_right_form_says_nothing_of_the_answer(forms, part, answer, capsys):

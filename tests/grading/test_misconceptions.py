@@ -144,12 +144,12 @@ def _metres(matrix):
     return changed
 
 
-@pytest.mark.parametrize("key", ["slip", "n_y"])
+@pytest.mark.parametrize("key", ["slip", "mended"])
 def test_traps_of_the_task_come_first(judge, solved, key):
     if key == "slip":
         assert "right as printed" in judge("slip", "n_z").message
     else:
-        got = judge("n_y", solved["n"][1])
+        got = judge("mended", solved["n"][1])
         assert got.misconception == "trap"
         assert "as it is printed" in got.message
 

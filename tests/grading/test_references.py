@@ -47,7 +47,7 @@ def test_links_and_functions_multiply_to_the_witness(exercise, poses):
 
 
 def test_the_entry_agrees_with_the_witness(exercise, poses):
-    part = exercise.part("n_y")
+    part = exercise.part("mended")
     for q, T in poses:
         assert abs(part.asks.quantity(part.chain, q) - T[1, 0]) < 1e-12
 
@@ -104,7 +104,7 @@ def test_the_witness_marks_right_and_its_neighbour_wrong(exercise, poses):
 
 
 def test_the_slides_have_the_slip_where_the_exercise_says(exercise):
-    part = exercise.part("n_y")
+    part = exercise.part("mended")
     printed = part.traps[0].quantity
     q = np.array([0.3, 0.5, 0.7, 0.2])
     column = part.chain.T(0, 4, q)[:3, 0]

@@ -31,8 +31,8 @@ WHOLE = {
         "T6": lambda T: T,
         "T6_quarter": lambda T: T,
         "p": lambda T: T[:3, 3],
-        "n_x": lambda T: T[0, 0],
-        "n_y": lambda T: T[1, 0],
+        "mended_1": lambda T: T[0, 0],
+        "mended_2": lambda T: T[1, 0],
     },
     "stanford": {
         "T6": lambda T: T,
@@ -172,8 +172,8 @@ def test_what_the_slides_print_of_the_puma():
     exercise = load_exercise("puma560", ROOT / "exercises")
     q = np.array([0.3, -0.4, 0.5, 0.7, -0.6, 0.9])
     n = bare(exercise).T(0, 6, q)[:3, 0]
-    x, y = (exercise.part(name).traps for name in ("n_x", "n_y"))
-    printed = [float(trap.quantity(exercise.arm, q)) for trap in (x[0], y[0])]
+    x, y = (exercise.part(name).traps for name in ("mended_1", "mended_2"))
+    printed = [float(trap.quantity(exercise.arm, q)) for trap in (x[0], y[1])]
     assert round(float(np.linalg.norm([*printed, n[2]])), 3) == 1.052
     half_mended = [float(x[1].quantity(exercise.arm, q)), printed[1], n[2]]
     assert np.isclose(np.linalg.norm(half_mended), 1)

@@ -170,7 +170,7 @@ def test_only_entries_that_differ_are_marked():
     assert show(exercise().part("A1"), right("A1")).answer.differing == 0
 
 
-@pytest.mark.parametrize("part_id", ["frames", "table", "A1", "A1_sym", "link", "slip", "n_y"])
+@pytest.mark.parametrize("part_id", ["frames", "table", "A1", "A1_sym", "link", "slip", "mended"])
 @pytest.mark.parametrize(
     "reading",
     [
