@@ -1,7 +1,7 @@
 """What the exercise on one link asks, and how it is marked."""
 
-from dataclasses import dataclass
-from functools import reduce
+from dataclasses import dataclass, replace
+from functools import cache, reduce
 from itertools import permutations
 
 import numpy as np
@@ -167,28 +167,50 @@ def figure():
     )
 
 
-def matrix(names, rows=slice(4), columns=slice(4)):
-    """The link matrix, or a part of it, of such an arm."""
-    return lambda arm, *parameters: arm.A(1, [dict(zip(names, parameters, strict=True))["theta"]])[rows, columns]
+def matrix(names, position=False):
+    """The link matrix of such an arm, or its position alone."""
+    entries = (slice(3), 3) if position else ...
+    return lambda arm, *parameters: arm.A(1, [dict(zip(names, parameters, strict=True))["theta"]])[entries]
 
 
-def formula(part, title, points, convention, names, section, shape=(4, 4), traps=(), **entries):
-    """An entry, a column or the whole of the link matrix in symbols."""
-    make, take = link(convention, names), matrix(names, **entries)
-    asks = Formula(lambda arm, q: take(make(*q), *q), shape=shape, symbols=names)
+@cache
+def formula(part, title, points, convention, names, section, position=False):
+    """The link matrix in symbols, or its position alone: the same part for every student."""
+    make, take = link(convention, names), matrix(names, position)
+    asks = Formula(lambda arm, q: take(make(*q), *q), shape=(3,) if position else (4, 4), symbols=names)
     told = retold(lambda q: make(*q), lambda arm, q: take(arm, *q), ((0.3, 0.4, 0.5, 0.6),))
     arm = link(convention, CLASSIC)(*DEFAULT.LINK.values())
-    return Part(part, title, points, asks, section=section, arm=arm, traps=[*traps, *told], kinematics=False)
+    return Part(part, title, points, asks, section=section, arm=arm, traps=told, kinematics=False)
 
 
+@cache
 def function(part, title, points, convention, names, section):
-    """The link matrix as a function."""
+    """The link matrix as a function: the same part for every student."""
     make, take = link(convention, names), matrix(names)
     asks = Function(lambda arm, *p: take(make(*p), *p), calls=CALLS, signature=f"{part}({', '.join(names)})")
     arm = link(convention, CLASSIC)(*DEFAULT.LINK.values())
     return Part(
         part, title, points, asks, section=section, arm=arm, traps=retold(make, take, CALLS[0]), kinematics=False
     )
+
+
+def origin(wrong):
+    """The position of the modified link matrix, of which one factor is printed wrongly."""
+    part = formula("origin", "The position, mended", 1, "modified", MODIFIED, "sec-modified-slip", position=True)
+    traps = [
+        Trap(
+            "This is the position of the printed product, with its wrong factor.",
+            lambda arm, q: reduce(
+                np.matmul, (STEPS[step](value) for (step, _), value in zip(printed(wrong), q, strict=True))
+            )[:3, 3],
+        ),
+        Trap(
+            "This is the position of the classic convention, a cos θ, a sin θ, d.",
+            lambda arm, q: classic(q[2], q[3], q[1], q[0])[:3, 3],
+            "convention",
+        ),
+    ]
+    return replace(part, traps=[*traps, *part.traps])
 
 
 def measured(LINK, part, title, names, tolerance, traps):
@@ -215,6 +237,7 @@ STEPS = {"Rz": Rz, "Tz": Tz, "Tx": Tx, "Rx": Rx}
 VALUES = {"Rz": 0.7, "Tz": 1.3, "Tx": 1.9, "Rx": -0.4}
 
 
+@cache
 def product(order):
     return reduce(np.matmul, (STEPS[step](VALUES[step]) for step in order))
 
@@ -290,31 +313,7 @@ def exercise(given):
                 ),
                 section="sec-modified-slip",
             ),
-            formula(
-                "origin",
-                "The position, mended",
-                1,
-                "modified",
-                MODIFIED,
-                "sec-modified-slip",
-                shape=(3,),
-                rows=slice(3),
-                columns=3,
-                traps=[
-                    Trap(
-                        "This is the position of the printed product, with its wrong factor.",
-                        lambda arm, q: reduce(
-                            np.matmul,
-                            (STEPS[step](value) for (step, _), value in zip(printed(given.wrong), q, strict=True)),
-                        )[:3, 3],
-                    ),
-                    Trap(
-                        "This is the position of the classic convention, a cos θ, a sin θ, d.",
-                        lambda arm, q: classic(q[2], q[3], q[1], q[0])[:3, 3],
-                        "convention",
-                    ),
-                ],
-            ),
+            origin(given.wrong),
             measured(
                 LINK,
                 "angles",

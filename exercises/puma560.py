@@ -249,12 +249,12 @@ def mended_link(i, wrong_row, arm, title):
 def printed_table(reversed_x):
     """The classic table with one x axis reversed, as source."""
     rows = [
-        ["theta1", "0", "0", "-pi / 2"],
-        ["theta2", "0", "a2", "0"],
-        ["theta3", "d3", "a3", "-pi / 2"],
-        ["theta4", "d4", "0", "pi / 2"],
-        ["theta5", "0", "0", "-pi / 2"],
-        ["theta6", "0", "0", "0"],
+        ['"q1"', "0", "0", "-pi / 2"],
+        ['"q2"', "0", "a2", "0"],
+        ['"q3"', "d3", "a3", "-pi / 2"],
+        ['"q4"', "d4", "0", "pi / 2"],
+        ['"q5"', "0", "0", "-pi / 2"],
+        ['"q6"', "0", "0", "0"],
     ]
     theta, d, *link = rows[reversed_x - 1]
     rows[reversed_x - 1] = [

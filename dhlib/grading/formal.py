@@ -102,14 +102,39 @@ def fault_of(part_id: str, form: Form, answer: Any) -> tuple[str, str]:
     ('the form is not right yet', 'The last row of a pose is 0 0 0 1.')
     """
     from dhlib.grading.answers import read_answer
-    from dhlib.grading.marks import HEADLINES, OPEN, UNREADABLE
+    from dhlib.grading.marks import HEADLINES, OPEN, UNREADABLE, with_minus
 
     reading = read_answer(_request(form), answer)
     if "fault" in reading:
         headline = HEADLINES[OPEN if reading["fault"] in MISSING else UNREADABLE]
-        return headline, sentence(reading, part_id, wanted(form), ", ".join(form.get("options", ())))
-    message = _fault(form, reading)
+        says = sentence(reading, part_id, wanted(form), ", ".join(form.get("options", ())))
+        return headline, f"{says} {count_of_frames(form, reading)}".rstrip()
+    message = with_minus(_fault(form, reading))
     return ("the form is not right yet", message) if message else ("", "")
+
+
+def count_of_frames(form: Form, reading: Mapping[str, Any]) -> str:
+    """Which frames are asked for, if there are too few or too many of them; empty if that is not the fault.
+
+    Examples
+    --------
+    >>> form = {"form": "frames", "shape": [5, 4, 4], "convention": "classic"}
+    >>> count_of_frames(form, {"fault": "shape", "shape": [4, 4, 4]})
+    'The frames are {0} to {4}: {0}, the base, counts too, and {4} stands where the last link ends. One is missing.'
+    """
+    shape = reading.get("shape")
+    if form["form"] != "frames" or reading.get("fault") != "shape" or not isinstance(shape, list):
+        return ""
+    if len(shape) != 3 or shape[1:] != [4, 4] or not isinstance(shape[0], int):
+        return ""
+    count = form["shape"][0]
+    n, off = count - 1, shape[0] - count
+    last = "stands where the last link ends" if form["convention"] == "classic" else "stands on the last axis"
+    numbers = {1: "One", 2: "Two", 3: "Three"}
+    how = (
+        f"{numbers.get(abs(off), abs(off))} {'is' if abs(off) == 1 else 'are'} {'missing' if off < 0 else 'too many'}."
+    )
+    return f"The frames are {{0}} to {{{n}}}: {{0}}, the base, counts too, and {{{n}}} {last}. {how}"
 
 
 def _request(form: Form) -> dict[str, Any]:

@@ -23,6 +23,7 @@ from dhlib.grading.marks import COARSE, FOLLOWS, NEARLY, OPEN, REASONED, RIGHT, 
 from dhlib.grading.misconceptions import KNOWN, name_one, would_have_given
 from dhlib.grading.poses import describe, improper, listed
 from dhlib.grading.tables import judge_table
+from dhlib.grading.terms import slip_in_a_term
 from dhlib.scalars import FloatArray
 
 Reading = Mapping[str, Any]
@@ -77,7 +78,10 @@ def judge(part: Part, reading: Any, earlier: Mapping[str, Earlier]) -> Earlier:
     if "fault" in reading:
         verdict = OPEN if reading["fault"] in MISSING else UNREADABLE
         options = ", ".join(part.asks.options) if isinstance(part.asks, Choice) else ""
-        return Earlier(make_mark(part, verdict, sentence(reading, part.id, wanted(part), options)), None)
+        says = sentence(reading, part.id, wanted(part), options)
+        if isinstance(part.asks, Frames) and (more := formal.count_of_frames(formal.outline(part), reading)):
+            says = f"{says} {more}"
+        return Earlier(make_mark(part, verdict, says), None)
     try:
         match part.asks:
             case ReasonedChoice():
@@ -259,6 +263,8 @@ def _judge_values(part: Part, asks: Valued, values: FloatArray, earlier: Mapping
         says = f"The values are close, but further off than {asks.tolerance:g}"
         says += f" (lengths: {asks.length_tolerance:g})" if asks.shape == (4, 4) else ""
         return make_mark(part, NEARLY, f"{says}. Round only at the end.", COARSE)
+    if isinstance(asks, Formula) and (says := slip_in_a_term(part, asks, values, right)):
+        return make_mark(part, WRONG, says)
     if asks.shape == (4, 4) and (fault := improper(values)):
         return make_mark(part, WRONG, fault, known=KNOWN["improper"])
     return make_mark(part, WRONG, describe(asks, values, right, part.chain.unit))

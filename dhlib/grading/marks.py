@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from dhlib.grading.exercise import Part
@@ -22,6 +23,8 @@ HEADLINES = {
 COARSE = 0.5
 #: Which part of the points a right choice earns at most whose reasons are not all given, or not all good.
 REASONED = 0.75
+#: A hyphen before a number or a symbol, or alone; and what stands in square brackets, which is code.
+HYPHEN = re.compile(r"\[[^\]]*\]|(?<![^\s(=·×±])-(?=[\d.]|[^\W\d_q]|\s)")
 #: What is wrong about a single number that still was worked out, and not guessed.
 OF_DRESS = ("degrees", "unit")
 
@@ -71,6 +74,17 @@ def stopped_with(error: str) -> str:
     return f"Its cell stopped with an error: {error.rstrip('.')}."
 
 
+def with_minus(text: str) -> str:
+    """Text with a minus where a hyphen stands for one; what is code, in brackets or of a joint variable, stays.
+
+    Examples
+    --------
+    >>> with_minus("n_z is -S23 C4, and x - y is -1; write -q1, or q[i - 1], in the right-hand frame")
+    'n_z is −S23 C4, and x − y is −1; write -q1, or q[i - 1], in the right-hand frame'
+    """
+    return HYPHEN.sub(lambda found: found[0] if found[0].startswith("[") else "−", text)
+
+
 def make_mark(
     part: Part, verdict: str, message: str = "", credit: float = 0.0, known: Misconception | None = None
 ) -> Mark:
@@ -95,7 +109,7 @@ def make_mark(
         part.points if passed else round(4 * part.points * credit) / 4,
         part.points,
         verdict,
-        message,
+        message if verdict in (OPEN, UNREADABLE) else with_minus(message),
         known.key if known else "",
         section if verdict in (NEARLY, WRONG) else "",
     )

@@ -6,6 +6,7 @@ to, with the words for it. All words about misconceptions stand here and nowhere
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -440,7 +441,42 @@ def name_one(fitting: list[Slip]) -> Slip | None:
     checks = ", or ".join(each.brief for each in known[:3])
     key = "+".join(each.key for each in known)
     several = replace(known[0], number=0, key=key, brief=checks, credit=min(each.credit for each in known))
-    return Slip(several, f"Several slips lead to this very answer, so look at each of these: {checks}.")
+    count = {2: "Two", 3: "Three"}.get(len(slips), "Several")
+    told = ", or ".join(_clause(slip.says) for slip in slips[:3])
+    return Slip(several, f"{count} slips lead to this very answer: {told}. {_common(slips)}".rstrip())
+
+
+#: What two slips have in common that lead to one answer.
+COMMON = {
+    frozenset({"sense", "sign"}): "Either way it is a sign.",
+    frozenset({"sense", "transpose"}): "Either way a turn goes backwards.",
+    frozenset({"sense", "steps"}): "Either way a turn or a slide stands on the wrong side of a twist.",
+    frozenset({"sign", "transpose"}): "Either way a twist goes backwards.",
+    frozenset({"sign", "length_sign"}): "Either way it is a sign.",
+    frozenset({"sense", "length_sign"}): "Either way it is a sign.",
+    frozenset({"transpose", "length_sign"}): "Either way the link leads backwards.",
+    frozenset({"length_sign", "lengths"}): "Either way it is the column of a.",
+    frozenset({"convention", "reverse"}): "Either way the factors come in another order.",
+    frozenset({"offset", "transpose"}): "Either way a fixed angle goes backwards.",
+}
+#: Numbers of joints in what is said of a slip.
+JOINT = re.compile(r"\bjoint (\d+)|\b[θd]_?(\d+)")
+FIRST_WORDS = ("The", "It", "This", "Your", "These", "Each", "All", "Lengths")
+
+
+def _clause(says: str) -> str:
+    """What is said of a slip, without where and without why: so that two of them make one sentence."""
+    clause = re.sub(r"^In \w+ ", "", re.split(r"[:;.]", says, maxsplit=1)[0])
+    first = clause.partition(" ")[0]
+    return f"{clause[:1].lower()}{clause[1:]}" if first in FIRST_WORDS else clause
+
+
+def _common(slips: list[Slip]) -> str:
+    """What slips have in common: one joint, or one kind of thing."""
+    joints = [{number for found in JOINT.findall(_clause(slip.says)) for number in found if number} for slip in slips]
+    if len(shared := set.intersection(*joints)) == 1:
+        return f"Either way it is joint {shared.pop()}."
+    return COMMON.get(frozenset(slip.misconception.key for slip in slips), "")
 
 
 def told_frames(chain: Chain, convention: str) -> Iterator[tuple[Slip, FloatArray]]:

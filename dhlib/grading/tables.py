@@ -7,6 +7,7 @@ joints that count the other way; its mirror image; the wrong unit; a known misco
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from itertools import combinations
 from typing import Any
@@ -21,7 +22,7 @@ from dhlib.grading.forms import Table
 from dhlib.grading.marks import NEARLY, RIGHT, UNREADABLE, WRONG, Mark, make_mark
 from dhlib.grading.misconceptions import KNOWN, OTHER, TRAP, Slip, name_one, retellings
 from dhlib.grading.poses import listed
-from dhlib.grading.retelling import scaled
+from dhlib.grading.retelling import altered, scaled
 from dhlib.mechanism import FREEDOMS, Sameness, same_mechanism
 from dhlib.scalars import FloatArray
 from dhlib.table import DEFAULT_COLUMNS
@@ -30,6 +31,11 @@ Rows = Mapping[str, Any]
 
 #: What an answer on each rung of the ladder earns, where the task does not leave that choice free.
 CREDIT = {"ends": 0.75, "zeros": 0.75, "senses": 0.5, "mirror": 0.25}
+#: How the columns are called, and how many numbers may be named as the one that is off.
+SYMBOLS = {"theta": "θ", "d": "d", "a": "a", "alpha": "α"}
+MOST_ODD = 3
+#: The variable of a joint in a cell of text.
+VARIABLE = re.compile(r"(?<![A-Za-z])(?:theta|θ|th|t|q|d)_?\{?(\d+)")
 #: Angles in rad, and lengths relative to the reach, that count as equal.
 TOLERANCE = 1e-3
 FACTORS = {1000.0: "a thousand times too small", 0.001: "a thousand times too large",
@@ -49,6 +55,8 @@ def judge_table(part: Part, asks: Table, table: Rows) -> Mark:
     """
     reference = part.chain.to_classic() if asks.convention == "classic" else part.chain.to_modified()
     degrees = False
+    if says := odd_variables(_without_numbering(table)["rows"], reference.n):
+        return make_mark(part, WRONG, says)
     try:
         answer = read_chain(table, asks, reference)
     except DHError as error:
@@ -57,8 +65,7 @@ def judge_table(part: Part, asks: Table, table: Rows) -> Mark:
         except DHError:
             return make_mark(part, UNREADABLE, _sentence(str(error)))
     if answer.n != reference.n:
-        rows = f"{answer.n} row{'s' if answer.n != 1 else ''}"
-        return make_mark(part, WRONG, f"The table has {rows}; the arm has {reference.n} joints, and each needs one.")
+        return make_mark(part, WRONG, f"{_count(answer.n, reference.n)} {odd_row(answer, reference)}".rstrip())
     if answer.kinds != reference.kinds:
         i = next(i for i, (x, y) in enumerate(zip(answer.kinds, reference.kinds, strict=True), 1) if x != y)
         right = {"R": "revolute: θ varies and d is constant", "P": "prismatic: d varies and θ is constant"}
@@ -89,11 +96,14 @@ def read_chain(table: Rows, asks: Table, reference: Chain, degrees: bool = False
             table["rows"], columns, letters, convention, degrees=degrees, unit=reference.unit, **ends
         )
 
+    kinds = reference.kinds
+    if len(table["rows"]) != reference.n and set(kinds) == {"R"}:
+        kinds = "R" * len(table["rows"])
     try:
         chain = read(columns, "")
     except DHError as error:
         try:  # where no row says what varies, θ and d are the zeros of the joints of this arm
-            chain = read(columns, reference.kinds)
+            chain = read(columns, kinds)
         except DHError:
             _refuse_other_columns(table, read, convention)
             raise error from None
@@ -163,9 +173,97 @@ def climb_down(part: Part, asks: Table, answer: Chain, reference: Chain) -> Mark
             return make_mark(part, NEARLY, says, known.credit, known)
     if slip:
         return make_mark(part, WRONG, slip.says, slip.misconception.credit, slip.misconception)
-    if verdict.finding == verdict.reason:
-        return make_mark(part, WRONG, _sentence(verdict.reason))
-    return make_mark(part, WRONG, _sentence(f"{verdict.finding}; by the task it is not"))
+    reason = verdict.reason if verdict.finding == verdict.reason else f"{verdict.finding}; by the task it is not"
+    return make_mark(part, WRONG, f"{_sentence(reason)} {odd_number(asks, answer, reference)}".rstrip())
+
+
+def _count(rows: int, joints: int) -> str:
+    return f"The table has {rows} row{'s' if rows != 1 else ''}; the arm has {joints} joints, and each needs one."
+
+
+def odd_variables(rows: list[list[float | str]], joints: int) -> str:
+    """Whose variable no row holds, or two rows hold, if there are too few or too many rows; else empty.
+
+    Examples
+    --------
+    >>> odd_variables([["q1", 0, 1, 0], ["q3", 0, 1, 0]], 3)
+    'The table has 2 rows; the arm has 3 joints, and each needs one. No row holds the variable of joint 2.'
+    """
+    held = [{int(number) for cell in row if isinstance(cell, str) for number in VARIABLE.findall(cell)} for row in rows]
+    if len(rows) == joints or any(len(numbers) != 1 for numbers in held):
+        return ""
+    numbers = [number for (number,) in held]
+    missing = [str(i) for i in range(1, joints + 1) if i not in numbers]
+    twice = [str(i) for i in dict.fromkeys(numbers) if numbers.count(i) > 1]
+    beyond = [str(i) for i in numbers if not 1 <= i <= joints]
+    if missing == [str(joints)]:  # the rows may have been numbered anew
+        return ""
+    if not beyond and len(missing) == 1 and not twice:
+        return f"{_count(len(rows), joints)} No row holds the variable of joint {missing[0]}."
+    if not beyond and len(twice) == 1 and not missing:
+        return f"{_count(len(rows), joints)} More than one row holds the variable of joint {twice[0]}."
+    return ""
+
+
+def odd_row(answer: Chain, reference: Chain) -> str:
+    """Which row of a table is missing, or one too many, if that is all that is wrong with it; else empty."""
+    short, long = sorted((answer, reference), key=lambda chain: chain.n)
+    if short.n == 0 or long.n - short.n != 1 or short.convention != long.convention:
+        return ""
+    fits = [
+        i
+        for i in range(1, long.n + 1)
+        if (left := without_row(long, i)).kinds == short.kinds and _same_rows_or_arm(short, left)
+    ]
+    if not fits:
+        return ""
+    which = f"Row {fits[0]}" if len(fits) == 1 else f"One of rows {listed(list(map(str, fits)))}"
+    return f"{which} seems to be {'missing' if short is answer else 'one too many'}: the others fit."
+
+
+def without_row(chain: Chain, i: int) -> Chain:
+    """The chain of a table that one row was taken out of."""
+    joints = [joint for k, joint in enumerate(chain.joints, 1) if k != i]
+    return Chain(joints, chain.convention, chain.base, chain.tool, unit=chain.unit)
+
+
+def _same_rows_or_arm(one: Chain, other: Chain) -> bool:
+    return _is(one, other) or bool(same_mechanism(one, other, tol=TOLERANCE))
+
+
+def odd_number(asks: Table, answer: Chain, reference: Chain) -> str:
+    """Which one number of a table is off, if with another in its place all would be right; else empty.
+
+    Its value is not told. Where different numbers would do, such as offsets along parallel axes, all are named.
+    """
+    found = []
+    for i, joint in enumerate(answer.joints, 1):
+        for name in ("d", "a", "alpha") if joint.kind == "R" else ("theta", "a", "alpha"):
+            if any(_would_do(asks, answer, reference, i, name, v) for v in _instead(answer, reference, i, name)):
+                found.append(f"{SYMBOLS[name]} in row {i}")
+    if not 1 <= len(found) <= MOST_ODD:
+        return ""
+    return f"All else fits: it is the {' or the '.join(found)} that is off."
+
+
+def _instead(answer: Chain, reference: Chain, i: int, name: str) -> list[float]:
+    """What may have to stand in place of a number, in the student's own choice of frames."""
+    there = float(getattr(answer.joints[i - 1], name))
+    right = float(getattr(reference.joints[i - 1], name))
+    if name in ("theta", "alpha"):
+        values = [right, -right, right + math.pi, math.pi - right]
+        return [v for v in values if abs(math.remainder(v - there, 2 * math.pi)) > TOLERANCE]
+    missing = sum(float(getattr(joint, name)) for joint in reference.joints) - sum(
+        float(getattr(joint, name)) for joint in answer.joints
+    )
+    apart = TOLERANCE * max(reference.reach, 1e-9)
+    values = [right, -right, there + missing]
+    return [v for k, v in enumerate(values) if abs(v - there) > apart and all(abs(v - w) > apart for w in values[:k])]
+
+
+def _would_do(asks: Table, answer: Chain, reference: Chain, i: int, name: str, value: float) -> bool:
+    verdict = closest(asks, altered(answer, i, **{name: value}), reference)
+    return bool(verdict) and _ends_stay(verdict, asks, reference)
 
 
 def closest(asks: Table, answer: Chain, reference: Chain) -> Sameness:

@@ -304,7 +304,7 @@ Q = np.deg2rad([30, -50, 70, 20])
         ("A1", ..., "A1: still open. Put your answer"),
         ("A1", np.eye(3), "A1: cannot be read. A1 has 3 rows and 3 columns; a matrix of 4 rows and 4 columns is asked"),
         ("A1", ARM.A(1, Q) + 0.3 * np.eye(4), "A1: the form is not right yet. The last row of a pose is 0 0 0 1."),
-        ("A1", np.diag([1, 1, -1, 1]), "The determinant of the rotation is -1"),
+        ("A1", np.diag([1, 1, -1, 1]), "The determinant of the rotation is −1"),
         ("A1", np.diag([2, 1, 1, 1]), "Column n has length 2"),
         ("A1_sym", np.array([["a"] * 4] * 4), "text in quotation marks"),
         ("link", ARM.A(1, Q), "a function is asked for"),

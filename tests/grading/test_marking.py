@@ -147,7 +147,7 @@ def test_close_values_are_told_to_round_later(judge, solved):
         (lambda m: m.__setitem__((3, 0), 0.5), "last row"),
         (lambda m: m.__setitem__((slice(3), 1), 2 * m[:3, 1]), "Column o has length 2"),
         (lambda m: m.__setitem__((slice(3), 1), m[:3, 0]), "not at right angles"),
-        (lambda m: m.__setitem__((slice(3), 2), -m[:3, 2]), "determinant of the rotation is -1"),
+        (lambda m: m.__setitem__((slice(3), 2), -m[:3, 2]), "determinant of the rotation is −1"),
         (lambda m: m.__setitem__((slice(3), 3), m[:3, 3] + [3, 0, 4]), "5 mm away"),
         (lambda m: m.__setitem__(slice(3), (m @ Rz(1.0))[:3]), "p is right; the rotation is not: see columns n and o"),
     ],
@@ -414,3 +414,18 @@ def test_a_length_left_in_its_row_is_named(part, n):
                                                       enumerate((260, 190, 110)[:n], 1)]))  # fmt: skip
     assert (got.misconception, got.section) == ("row", "sec-modified-trap-row")
     assert got.message.startswith("Row i holds the length of link i")
+
+
+@pytest.mark.parametrize(
+    ("count", "says"), [(4, "{4} stands where the last link ends. One is missing."), (7, "Two are too many.")]
+)
+def test_how_many_frames_there_should_be_is_said(judge, count, says):
+    got = judge("frames", [np.eye(4)] * count)
+    assert got.verdict == "unreadable"
+    assert "The frames are {0} to {4}: {0}, the base, counts too" in got.message
+    assert says in got.message
+
+
+def test_frames_of_another_shape_are_not_counted(judge):
+    """Negative control."""
+    assert "The frames are" not in judge("frames", [np.eye(3)] * 5).message

@@ -4,11 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy as sp
 from sampling import FULL
 
 from dhlib import Chain, robots
 from dhlib.grading.course.variants import Variants
 from dhlib.grading.diagnosis import Case, Tally, as_row, cases, other_chains, read, wrong_readings
+from dhlib.grading.exercise import load_exercise
 from dhlib.grading.forms import Choice, Valued
 from dhlib.grading.marking import mark
 from dhlib.grading.marks import Mark
@@ -157,7 +159,18 @@ def test_traps_of_the_task_come_first(judge, solved, key):
 def test_where_two_fit_both_are_said(judge, arm, solved):
     got = judge("A4", arm.A(4, -solved["q"]))
     assert got.misconception == "sense+transpose"
-    assert got.message.startswith("Several slips lead to this very answer, so look at each of these: the sense")
+    assert got.message == (
+        "Two slips lead to this very answer: joint 4 turns the wrong way, or the rotation is transposed. Either way a "
+        "turn goes backwards."
+    )
+
+
+def test_the_joint_that_several_slips_share_is_said(judge, arm, solved):
+    got = judge("mended", sp.cos(sp.Symbol("theta1")) * sp.Symbol("theta1"))
+    assert "Either way" not in got.message
+    part = load_exercise("quickshot").part("mended")
+    missing = [mark(part, reading) for keys, reading in wrong_readings(part) if keys == {"joint_kind", "missing"}]
+    assert [each.message.partition(" Either way ")[2] for each in missing] == ["it is joint 2.", "it is joint 4."]
 
 
 def test_every_sentence_points_into_the_book(every):

@@ -196,7 +196,8 @@ def test_the_number_that_is_expected_is_kept_back(exercise):
     def said(*changes):
         return mark(part, read_answer(part.asks.request(), with_cells(*changes))).message
 
-    assert said((2, "a", 150)) == "Distance between axes 2 and 3 is 150; by the task it is not."
+    off = "All else fits: it is the a in row 2 that is off."
+    assert said((2, "a", 150)) == f"Distance between axes 2 and 3 is 150; by the task it is not. {off}"
     assert "its origin is 250 mm away" in said((4, "d", 0))
 
 
@@ -210,3 +211,52 @@ def test_a_hint_on_a_modified_table_points_to_its_own_chapter():
         rows = [j.replace(a=a, alpha=alpha) for j, (a, alpha) in zip(arm.joints, moved[key], strict=True)]
         got = mark(part, read_answer(part.asks.request(), Chain(rows, "modified")))
         assert (got.misconception, got.section) == (key, section)
+
+
+@pytest.mark.parametrize(
+    ("rows", "says"),
+    [
+        ([*RIGHT[:2], *RIGHT[3:]], "The table has 3 rows; the arm has 4 joints, and each needs one. No row holds the "
+         "variable of joint 3."),
+        ([*RIGHT[:2], *RIGHT[1:]], "More than one row holds the variable of joint 2."),
+        ([["q1", 100, 20, -pi / 2], ["q2", 28, 0, pi / 2], ["q3", 250, 0, 0]], "Row 2 seems to be missing"),
+        ([[0, 100, 20, -pi / 2], [0, 0, 160, 0], [0, 28, 0, pi / 2], [0, 7, 5, 1.0], [0, 250, 0, 0]],
+         "Row 4 seems to be one too many: the others fit."),
+    ],
+)  # fmt: skip
+def test_a_row_too_few_or_too_many_is_named(judge, rows, says):
+    got = judge("table", rows)
+    assert got.verdict == "wrong"
+    assert says in got.message
+
+
+@pytest.mark.parametrize("rows", [RIGHT[:2], [["q1", 100, 25, 0], ["q2", 1, 2, 1.0], ["q3", 250, 3, 0]]])
+def test_no_row_is_named_where_the_others_do_not_fit(judge, rows):
+    """Negative control."""
+    message = judge("table", rows).message
+    assert "each needs one" in message
+    assert "missing" not in message
+    assert "No row" not in message
+
+
+@pytest.mark.parametrize(
+    ("rows", "says"),
+    [
+        (with_cells((2, "d", 61)), "All else fits: it is the d in row 2 or the d in row 3 that is off."),
+        (with_cells((3, "a", 33)), "All else fits: it is the a in row 3 that is off."),
+        (with_cells((2, "alpha", 0.7)), "All else fits: it is the α in row 2 that is off."),
+        (with_cells((1, "a", -20), (1, "alpha", pi / 2), (3, "a", 33)), "it is the a in row 3 that is off."),
+    ],
+)
+def test_the_one_number_that_is_off_is_named_and_not_told(judge, rows, says):
+    message = judge("table", rows).message
+    assert says in message
+    assert not any(number in message.partition("All else fits")[2] for number in ("28", "160", "90"))
+
+
+@pytest.mark.parametrize("rows", [with_cells((2, "a", 150), (3, "a", 33)), with_cells((2, "alpha", 0.7), (3, "d", 9))])
+def test_no_number_is_named_where_two_are_off(judge, rows):
+    """Negative control."""
+    message = judge("table", rows).message
+    assert message
+    assert "All else fits" not in message

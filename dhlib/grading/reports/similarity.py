@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
-from dhlib.grading.marks import NEARLY, OPEN, WRONG
+from dhlib.grading.marks import NEARLY, OPEN, RIGHT, WRONG
 from dhlib.grading.reports.records import Answer, Record
 
 #: A wrong answer that more students share is common, and tells nothing.
@@ -82,10 +82,11 @@ def alike(records: Sequence[Record]) -> list[Alike]:
 
 
 def same_files(records: Sequence[Record]) -> list[list[Record]]:
-    """Students who handed in the same file, byte for byte."""
+    """Students who handed in the same file, byte for byte; but for files in which all is right, which say nothing."""
     owners: dict[str, list[Record]] = defaultdict(list)
     for record in records:
-        if any(answer.row.verdict != OPEN for answer in record.answers):
+        verdicts = {answer.row.verdict for answer in record.answers}
+        if verdicts - {OPEN} and verdicts != {RIGHT}:
             owners[record.submission.sha256].append(record)
     return [owned for owned in owners.values() if len({record.student for record in owned}) > 1]
 

@@ -323,6 +323,18 @@ def test_rare_wrong_answers_are_set_side_by_side(results):
     assert not alike([record for record in records if record.student != "5"])
 
 
+def test_the_same_file_says_nothing_if_all_in_it_is_right(results):
+    from dhlib.grading.reports.similarity import same_files
+
+    whole = {part.id: right(part.id) for part in exercise().parts}
+    for k, readings in enumerate((whole, whole, whole | {"A2": odd("A2", random.Random(3))})):
+        rows = marked(readings)
+        for student in (f"{k}", f"{k}b"):
+            file = submission(student, student, f"{student}/x.ipynb", rows, sha256="wrong" if k == 2 else "whole")
+            results.add(file, rows)
+    assert [{record.student for record in group} for group in same_files(read_results(results))] == [{"2", "2b"}]
+
+
 def test_names_stay_out_where_they_should(records):
     # Two who handed in the same file are named.
     first, second, *others = records
