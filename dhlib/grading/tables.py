@@ -210,11 +210,10 @@ def odd_row(answer: Chain, reference: Chain) -> str:
     short, long = sorted((answer, reference), key=lambda chain: chain.n)
     if short.n == 0 or long.n - short.n != 1 or short.convention != long.convention:
         return ""
-    fits = [
-        i
-        for i in range(1, long.n + 1)
-        if (left := without_row(long, i)).kinds == short.kinds and _same_rows_or_arm(short, left)
-    ]
+    left = {i: without_row(long, i) for i in range(1, long.n + 1)}
+    left = {i: chain for i, chain in left.items() if chain.kinds == short.kinds}
+    fits = [i for i, chain in left.items() if _is(short, chain)]
+    fits = fits or [i for i, chain in left.items() if same_mechanism(short, chain, tol=TOLERANCE)]
     if not fits:
         return ""
     which = f"Row {fits[0]}" if len(fits) == 1 else f"One of rows {listed(list(map(str, fits)))}"
@@ -225,10 +224,6 @@ def without_row(chain: Chain, i: int) -> Chain:
     """The chain of a table that one row was taken out of."""
     joints = [joint for k, joint in enumerate(chain.joints, 1) if k != i]
     return Chain(joints, chain.convention, chain.base, chain.tool, unit=chain.unit)
-
-
-def _same_rows_or_arm(one: Chain, other: Chain) -> bool:
-    return _is(one, other) or bool(same_mechanism(one, other, tol=TOLERANCE))
 
 
 def odd_number(asks: Table, answer: Chain, reference: Chain) -> str:
