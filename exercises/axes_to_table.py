@@ -6,7 +6,7 @@ from itertools import permutations
 
 import numpy as np
 
-from dhlib import Axis, Rx, Ry, Rz, Tx, Ty, Tz, place_frames
+from dhlib import Axis, Rx, Ry, Rz, place_frames
 from dhlib.grading.asking import METRES, constant, holding, number, reasoned
 from dhlib.grading.course.sources import lettered, matrix, row
 from dhlib.grading.course.sources import number as number_as_source
@@ -454,7 +454,9 @@ def walk(given, rpy=lambda r, p, y: Rz(y) @ Ry(p) @ Rx(r), turned=True, senses=T
     """Lines (point, direction) of the moving joints of the file, and the pose of its last link."""
     at, lines = np.eye(4), []
     for kind, xyz, angles, axis in given.file if last else given.file[:-1]:
-        at = at @ Tx(xyz[0]) @ Ty(xyz[1]) @ Tz(xyz[2]) @ rpy(*angles)
+        step = rpy(*angles)
+        step[:3, 3] = xyz
+        at = at @ step
         if kind != "fixed":
             seen = np.array(axis) if senses else np.abs(axis)
             lines.append([*at[:3, 3], *(at[:3, :3] @ seen if turned else seen)])
