@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import threading
 from collections.abc import Callable, Iterator
@@ -15,6 +14,7 @@ from building import build_book
 from filelock import FileLock
 from hypothesis import settings
 from serve import server
+from sources import book_of_one_page, copy_sources
 
 __all__ = ["browser", "pytest_runtest_protocol"]
 
@@ -76,36 +76,14 @@ def questions_site(built_once: Callable[..., Path]) -> Path:
     """The folder of a site of one page, with one question of each kind."""
 
     def build(into: Path) -> subprocess.CompletedProcess[str]:
-        copy = copy_sources(into / "copy")
-        shutil.copy(ROOT / "tests/book/pages/questions.md", copy / "book" / "questions.md")
-        (copy / "_toc.yml").write_text("format: jb-book\nroot: book/questions\n", "utf-8")
+        page = (ROOT / "tests/book/pages/questions.md").read_text("utf-8")
+        copy = book_of_one_page(into / "copy", page, "questions")
         return build_book(copy, into, environment={"PYTHONPATH": str(copy)})
 
     return built_once("questions", build)
-
-
-@pytest.fixture(scope="session")
-def copied() -> Callable[[Path], Path]:
-    """Copies what the book is built from into a folder that does not exist yet."""
-    return copy_sources
 
 
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
     """A copy of what the book is built from, to be changed by a test."""
     return copy_sources(tmp_path / "copy")
-
-
-def copy_sources(copy: Path) -> Path:
-    """Copy what the book is built from."""
-    copy.mkdir()
-    ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "*.png", "node_modules")
-    for name in ("dhlib", "book", "exercises", "solutions", "requirements", "bench"):
-        if (ROOT / name).exists():
-            shutil.copytree(ROOT / name, copy / name, ignore=ignore)
-    for name in ("_config.yml", "_toc.yml", "package-lock.json"):
-        shutil.copy(ROOT / name, copy)
-    for name in ("node_modules", ".tools"):
-        if (ROOT / name).exists():
-            (copy / name).symlink_to(ROOT / name)
-    return copy

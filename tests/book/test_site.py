@@ -10,6 +10,7 @@ from bs4 import BeautifulSoup
 from building import build_book, pages_of
 from fontTools.ttLib import TTFont
 from site_listing import files_of, listed, unexpected
+from sources import put_page
 from truth import silent_figures
 
 pytestmark = pytest.mark.book
@@ -122,8 +123,7 @@ def test_links_of_the_book_lead_somewhere(site: Path) -> None:
 def add_page(copy: Path, body: str) -> None:
     """Put a page into a copy of the book, and that page alone."""
     header = "---\nfile_format: mystnb\nkernelspec: {name: python3, display_name: Python 3}\n---\n# A page\n\n"
-    (copy / "book" / "page.md").write_text(header + body, "utf-8")
-    (copy / "_toc.yml").write_text("format: jb-book\nroot: book/page\n", "utf-8")
+    put_page(copy, header + body)
 
 
 MISTAKES = {

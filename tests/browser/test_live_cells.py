@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import subprocess
 import threading
 from collections.abc import Callable, Iterator
@@ -16,6 +15,7 @@ import pytest
 from building import build_book
 from live import needs_numpy
 from serve import server
+from sources import book_of_one_page
 
 pytestmark = [pytest.mark.book, pytest.mark.browser]
 
@@ -26,13 +26,11 @@ A_MINUTE = 60_000
 
 
 @pytest.fixture(scope="session")
-def cells_site(built_once: Callable[..., Path], root: Path, copied: Callable[[Path], Path]) -> Path:
+def cells_site(built_once: Callable[..., Path], root: Path) -> Path:
     """The folder of a site of one page with cells of each kind."""
 
     def build(into: Path) -> subprocess.CompletedProcess[str]:
-        copy = copied(into / "copy")
-        shutil.copy(root / "tests/book/pages/cells.md", copy / "book" / "cells.md")
-        (copy / "_toc.yml").write_text("format: jb-book\nroot: book/cells\n", "utf-8")
+        copy = book_of_one_page(into / "copy", (root / "tests/book/pages/cells.md").read_text("utf-8"), "cells")
         return build_book(copy, into, environment={"PYTHONPATH": str(copy)})
 
     return built_once("cells", build)

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import shutil
+import subprocess
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from building import build_book
-from filelock import FileLock
 from serve import server
-
-ROOT = Path(__file__).parent.parent.parent
+from sources import book_of_one_page
 
 PAGE = """# Live figures
 
@@ -60,36 +58,15 @@ Six axes to place frames on.
 """
 
 
-def lay_out(folder: Path, text: str) -> Path:
-    """Lay out a book of one page in a folder, with the extensions and scripts of the book."""
-    ignore = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", "node_modules")
-    for name in ("dhlib", "book", "requirements", "bench"):
-        shutil.copytree(ROOT / name, folder / name, ignore=ignore)
-    for name in ("_config.yml", "package-lock.json"):
-        shutil.copy(ROOT / name, folder)
-    for name in ("node_modules", ".tools"):
-        if (ROOT / name).exists():
-            (folder / name).symlink_to(ROOT / name)
-    (folder / "book" / "page.md").write_text(text, "utf-8")
-    (folder / "_toc.yml").write_text("format: jb-book\nroot: book/page\n", "utf-8")
-    return folder
-
-
 @pytest.fixture(scope="session")
-def figures(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
-    """The folder of the built page: built once, whatever the number of test processes."""
-    base = tmp_path_factory.getbasetemp()
-    shared = (base if worker_id == "master" else base.parent) / "figures"
-    with FileLock(f"{shared}.lock"):
-        done = shared / "done"
-        if not done.exists():
-            shared.mkdir()
-            lay_out(shared, PAGE)
-            built = build_book(shared, shared, environment={"PYTHONPATH": str(shared)})
-            done.write_text(built.stdout if built.returncode else "")
-    if failure := done.read_text():
-        pytest.fail(f"The page of the figures does not build:\n{failure}")
-    return shared / "_build" / "html"
+def figures(built_once: Callable[..., Path]) -> Path:
+    """The folder of the built page."""
+
+    def build(into: Path) -> subprocess.CompletedProcess[str]:
+        copy = book_of_one_page(into / "copy", PAGE)
+        return build_book(copy, into, environment={"PYTHONPATH": str(copy)})
+
+    return built_once("figures", build)
 
 
 @pytest.fixture(scope="session")

@@ -13,11 +13,12 @@ from urllib.parse import urlsplit
 import numpy as np
 import pytest
 from building import build_book
+from sources import ROOT, book_of_one_page
 
 from dhlib import Chain, Revolute, check_frames, classic, modified, place_frames, robots
 
 sys.path.append(str(Path(__file__).parent))
-from conftest import PAGE, ROOT, lay_out
+from conftest import PAGE
 
 pytestmark = [pytest.mark.book, pytest.mark.browser]
 
@@ -657,8 +658,8 @@ MISTAKES = {
 
 
 def test_each_mistake_in_a_directive_is_said(tmp_path: Path) -> None:
-    lay_out(tmp_path, "# A page\n\n" + "\n\n".join(MISTAKES))
-    built = build_book(tmp_path, tmp_path, environment={"PYTHONPATH": str(tmp_path)})
+    copy = book_of_one_page(tmp_path / "copy", "# A page\n\n" + "\n\n".join(MISTAKES))
+    built = build_book(copy, tmp_path, environment={"PYTHONPATH": str(copy)})
     assert built.returncode != 0
     assert [complaint for complaint in MISTAKES.values() if complaint not in built.stdout] == []
 
