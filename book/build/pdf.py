@@ -52,7 +52,9 @@ STYLE = """
   script, .citation > .backrefs { display: none !important; }
   .citation > .label { float: left; margin-right: 0.6em; }
   .citation > p { margin: 0 0 0.4em; }
-  .dh-answer input { border: 0 !important; border-bottom: 1px solid #666 !important; border-radius: 0 !important; }
+  .dh-answer .dh-field { border: 0 !important; border-bottom: 1px solid #666 !important; border-radius: 0 !important; }
+  .dh-option .dh-field { border: 1px solid #666; border-radius: 0.25rem; }
+  .dh-option .dh-field.radio { border-radius: 50%; }
 """
 FOOTER = (
     '<div style="width:100%;font:8pt sans-serif;text-align:center;color:#555"><span class="pageNumber"></span></div>'

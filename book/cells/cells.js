@@ -91,10 +91,12 @@ export class Cell {
     this.aboveButton = this.button("Run all above", name, () => this.start({ above: true }));
     this.status = make("span", { class: "dh-status", role: "status" });
     this.progress = make("progress", { max: 1, value: 0, "aria-label": "Loading Python", hidden: true });
+    const said = this.bar.textContent; // of a cell that cannot run here, the page says so from the start
+    this.bar.replaceChildren();
     const above = this.number > 1 ? [this.aboveButton] : [];
     const buttons = this.about.elsewhere ? [] : [this.runButton, this.stopButton];
     this.bar.append(...buttons, this.editButton, this.resetButton, ...(this.about.elsewhere ? [] : above), this.progress, this.status);
-    if (this.about.elsewhere) this.say(`This cell needs ${this.about.elsewhere}, which does not run in a page: take the notebook.`);
+    if (this.about.elsewhere) this.say(said);
     if (this.about.mpl) this.say(`This cell draws with matplotlib. Run asks before it is taken from ${elsewhere}.`);
   }
 

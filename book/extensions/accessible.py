@@ -17,6 +17,7 @@ from sphinx.util import logging
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
+    from sphinx.config import Config
 
 logger = logging.getLogger(__name__)
 
@@ -78,7 +79,7 @@ def leave_tabs_to_us(app: Sphinx, exception: Exception | None) -> None:
     path.write_text(script, "utf-8")
 
 
-def add_scripts(app: Sphinx) -> None:
+def add_scripts(app: Sphinx, _config: Config) -> None:
     """Give every page its scripts."""
     for name in ("scrolling.js", "focus.js"):
         app.add_js_file(None, body=(ROOT / "book" / "web" / name).read_text("utf-8"))
@@ -86,7 +87,7 @@ def add_scripts(app: Sphinx) -> None:
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
-    app.connect("builder-inited", add_scripts)
+    app.connect("config-inited", add_scripts)
     app.connect("build-finished", mend_pages, priority=650)
     app.connect("build-finished", leave_tabs_to_us, priority=650)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

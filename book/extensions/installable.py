@@ -22,6 +22,7 @@ from dhlib.palette import LIGHT
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
+    from sphinx.config import Config
 
 WEB = ROOT / "book" / "web"
 WORKER = "sw.js"
@@ -170,14 +171,14 @@ def write_app(app: Sphinx, exception: Exception | None) -> None:
     write_worker(site)
 
 
-def add_script(app: Sphinx) -> None:
+def add_script(app: Sphinx, _config: Config) -> None:
     """Give every page the script that installs the worker."""
     app.add_js_file(None, body=(WEB / "offline.js").read_text("utf-8"))
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
-    app.connect("builder-inited", add_script)
+    app.connect("config-inited", add_script)
     app.connect("html-page-context", add_to_head)
     app.connect("build-finished", write_app, priority=950)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

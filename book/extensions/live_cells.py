@@ -48,7 +48,6 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-STYLE = ROOT / "book" / "style" / "cells.css"
 FOLDER = "run"
 HIDDEN = {"remove-cell", "remove-input"}
 PROGRESS = "book/progress"
@@ -242,7 +241,8 @@ def add_bars(app: Sphinx, doctree: nodes.document, page: str) -> None:
         return
     for container in doctree.findall(nodes.container):
         if container.get("nb_element") == "cell_code":
-            place = f'<div class="dh-cell-bar" data-cell="{container["cell_index"]}"></div>'
+            index = container["cell_index"]
+            place = f'<div class="dh-cell-bar" data-cell="{index}">{cannot_run(cells, index)}</div>'
             for part in list(container.findall(nodes.container)):  # a folded source lies deeper
                 if part.get("nb_element") == "cell_code_source":
                     part += nodes.raw("", place, format="html")
@@ -260,13 +260,22 @@ def add_bars(app: Sphinx, doctree: nodes.document, page: str) -> None:
     add_script(app, doctree, page, "exercise" if exercise else "cells", inline_data("dh-cells", data))
 
 
+def cannot_run(cells: list[dict[str, Any]], index: int) -> str:
+    """Say why a cell cannot run in its page; ``""`` if it can.
+
+    >>> cannot_run([{"k": 3, "elsewhere": "scipy"}, {"k": 4}], 3)
+    'This cell needs scipy, which does not run in a page: take the notebook.'
+    """
+    module = next((cell["elsewhere"] for cell in cells if cell["k"] == index and "elsewhere" in cell), "")
+    return f"This cell needs {module}, which does not run in a page: take the notebook." if module else ""
+
+
 def add_script(app: Sphinx, doctree: nodes.document, page: str, name: str, data: str) -> None:
     """Put a script to the end of a page, behind the data that it reads."""
     here = posixpath.dirname(app.builder.get_target_uri(page))
     address = html.escape(posixpath.relpath(f"{FOLDER}/{name}.js", here or "."))
     script = f'<script defer src="{address}?v={app.config.live_cells_edition}"></script>\n'
     doctree += nodes.raw("", data + script, format="html")
-    app.env.dh_live_pages.add(page)  # type: ignore[attr-defined]
 
 
 def of(points: float) -> str:
@@ -339,15 +348,9 @@ def add_progress(app: Sphinx, doctree: nodes.document, page: str) -> None:
     add_script(app, doctree, page, "progress", inline_data("dh-exercises", exercises))
 
 
-def add_sidebar(app: Sphinx) -> None:
+def add_sidebar(app: Sphinx, _config: Config) -> None:
     """Give every page the script that shows points in the sidebar."""
     app.add_js_file(None, body=(CELLS / "sidebar.js").read_text("utf-8"))
-
-
-def add_style(app: Sphinx, page: str, _template: str, _context: dict[str, Any], doctree: nodes.document | None) -> None:
-    """Give pages with cells their style sheet."""
-    if doctree is not None and page in getattr(app.env, "dh_live_pages", ()):
-        app.add_css_file("cells.css")
 
 
 def description(app: Sphinx) -> dict[str, Any]:
@@ -372,17 +375,11 @@ def the_distribution(app: Sphinx) -> browser_python.Distribution:
     return app.browser_python  # type: ignore[attr-defined,no-any-return]
 
 
-def begin(app: Sphinx, env: Any, _docnames: list[str]) -> None:
-    """Start with the pages that are known to have cells."""
-    if not hasattr(env, "dh_live_pages"):
-        env.dh_live_pages = set()
-
-
 def name_edition(_app: Sphinx, config: Config) -> None:
     """Name the content of all that the pages load: when it changes, every page is written anew."""
     folders = (CELLS, WEB, ROOT / "book" / "bookkit", ROOT / "dhlib", ROOT / "exercises")
     files = [path for folder in folders for path in folder.rglob("*") if path.suffix in {".js", ".mjs", ".py"}]
-    config["live_cells_edition"] = edition([*files, STYLE])
+    config["live_cells_edition"] = edition(files)
 
 
 # The site
@@ -450,10 +447,8 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_node(progress)
     app.add_directive("dh-progress", ProgressDirective)
     app.connect("config-inited", name_edition)
-    app.connect("builder-inited", add_sidebar)
-    app.connect("env-before-read-docs", begin)
+    app.connect("config-inited", add_sidebar)
     app.connect("doctree-resolved", add_bars)
     app.connect("doctree-resolved", add_progress)
-    app.connect("html-page-context", add_style)
     app.connect("build-finished", write_site)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

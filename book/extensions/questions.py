@@ -154,10 +154,7 @@ def entries(translator: HTML5Translator, question: dict[str, Any], node: nodes.E
             shown = feedback(translator, labels[column], node) if labels else ""
             spoken = re.sub(r"[$*`\\{}_]", "", labels[column]) if labels else _place(shape, row, column)
             own = next((u for u in ("rad", "°", "mm", "m") if labels and labels[column].rstrip("$").endswith(u)), unit)
-            field = (
-                f'<input type="text" inputmode="text" size="7" autocapitalize="off" spellcheck="false" '
-                f'data-unit="{own}" aria-label="{html.escape(spoken)}">'
-            )
+            field = late_field(type="text", data_unit=own, aria_label=spoken)
             fields.append(f"<span>{shown} {field}</span>" if shown else field)
     digits = {0: "whole numbers", 1: "one decimal"}.get(question["decimals"], f"{question['decimals']} decimals")
     if len(fields) == 1 and question["decimals"] == 0:
@@ -170,6 +167,16 @@ def entries(translator: HTML5Translator, question: dict[str, Any], node: nodes.E
     )
 
 
+def late_field(**attributes: object) -> str:
+    """Return the place of a field, with the attributes that the script of the page gives it.
+
+    Of each field that stands in a page when it opens the browser asks whether it is seen, to fill it in, and so has
+    what is far from the screen laid out.
+    """
+    given = json.dumps({name.replace("_", "-"): str(value) for name, value in attributes.items()})
+    return f'<span class="dh-field {attributes["type"]}" data-field="{html.escape(given)}"></span>'
+
+
 def _place(shape: list[int], row: int, column: int) -> str:
     return {0: "Answer", 1: f"Entry {column + 1}", 2: f"Row {row + 1}, column {column + 1}"}[len(shape)]
 
@@ -178,8 +185,8 @@ def visit_option(translator: HTML5Translator, node: OptionNode) -> None:
     """Begin an option."""
     kind = "checkbox" if node["several"] else "radio"
     translator.body.append(
-        f'<label class="dh-option"><input type="{kind}" name="{html.escape(node["name"])}" '
-        f'value="{node["number"]}"> <span>({letter(node["number"])}) '
+        f'<label class="dh-option">{late_field(type=kind, name=node["name"], value=node["number"])} '
+        f"<span>({letter(node['number'])}) "
     )
 
 

@@ -1,8 +1,9 @@
 """Let a page show itself soon: one style sheet instead of eleven, and scripts that wait until the text is there.
 
 The theme and the extensions each bring their own files, one imports another, and every one is a journey to the server
-before the first word is shown. The sheets of a page are joined in their order; scripts in the head are deferred, which
-keeps theirs. Bootstrap's watch over the contents, which lays out all that was left for later, gives way to ours.
+before the first word is shown. The sheets of a page are joined in their order, without the rules that no page needs
+(see `needed_rules`); scripts in the head are deferred, which keeps theirs. Bootstrap's watch over the contents, which
+lays out all that was left for later, gives way to ours.
 """
 
 from __future__ import annotations
@@ -14,9 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from formulas import ROOT
+from needed_rules import pruned, vocabulary
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
+    from sphinx.config import Config
 
 SHEET = re.compile(r'[ \t]*<link (?=[^>]*rel="stylesheet")[^>]*href="([^"?]+\.css)(?:\?[^"]*)?"[^>]*/?>\n?')
 JOINED = re.compile(r'<link rel="stylesheet"[^>]* data-joined="([^"]*)"')
@@ -27,6 +30,8 @@ PRELOADED = re.compile(r'[ \t]*<link rel="preload" as="script"[^>]*/?>\n?')
 DUMMY = re.compile(r'[ \t]*<script[^>]*src="[^"]*/fontawesome\.js[^"]*"></script>\n?')
 SPY = re.compile(r' data-(?:bs-spy|bs-target|offset|bs-root-margin)="[^"]*"')
 BODY = re.compile(r"<body[^>]*>")
+#: Scripts that may add classes; so may the Python of a page, which writes HTML.
+RUNNING = ("_static/**/*.js", "live/*.js", "run/*.js", "run/*.mjs")
 PAGE_NAME = re.compile(r"<script>(DOCUMENTATION_OPTIONS\.\w+ = '[^']*';)</script>")
 
 
@@ -76,13 +81,16 @@ def quicken_pages(app: Sphinx, exception: Exception | None) -> None:
     site = Path(app.outdir).resolve()
     into = site / "_static" / "styles"
     written: dict[tuple[Path, ...], str] = {}
+    running = [path for pattern in RUNNING for path in site.glob(pattern)]
+    running += [path for folder in ("dhlib", "book") for path in (ROOT / folder).rglob("*.py")]
+    words = vocabulary(site.rglob("*.html"), running)
     for path in site.rglob("*.html"):
         page = path.read_text("utf-8")
         sheets = sheets_of(page, path.parent, site)
         if not sheets or not all(sheet.is_file() for sheet in sheets):
             continue
         if sheets not in written:
-            text = joined(list(sheets), into)
+            text = pruned(joined(list(sheets), into), words)
             written[sheets] = f"page-{hashlib.sha256(text.encode()).hexdigest()[:10]}.css"
             (into / written[sheets]).write_text(text, "utf-8")
         address = posixpath.relpath((into / written[sheets]).as_posix(), path.parent.as_posix())
@@ -94,7 +102,7 @@ def quicken_pages(app: Sphinx, exception: Exception | None) -> None:
             old.unlink()
 
 
-def add_script(app: Sphinx) -> None:
+def add_script(app: Sphinx, _config: Config) -> None:
     """Give every page the scripts that let links find their section, and contents follow the reader."""
     for name in ("sections", "contents"):
         app.add_js_file(None, body=(ROOT / "book" / "web" / f"{name}.js").read_text("utf-8"))
@@ -102,6 +110,6 @@ def add_script(app: Sphinx) -> None:
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
-    app.connect("builder-inited", add_script)
-    app.connect("build-finished", quicken_pages, priority=660)
+    app.connect("config-inited", add_script)
+    app.connect("build-finished", quicken_pages, priority=660)  # when the scripts are written
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -3,7 +3,8 @@
 What the reader enters is the key. Each entry of an answer is a number on a line that is cut into cells, and the
 numbers of the cells, joined, are a password. PBKDF2 makes of it the key of an AES-GCM record with what there is to
 say. Where the cuts lie is public, and so chosen that every foreseen answer stands clear of them: an answer as exact
-as was asked for opens its record. The record itself holds the exact values, to compare with.
+as was asked for opens its record. The record itself holds the exact values, to compare with, and is packed before it is
+sealed: afterwards nothing makes it smaller.
 
 This keeps answers from the source and from a glance. A single number has few digits, and whoever lets a computer
 try them all will find it: questions are for learning, never for marks. ``book/web/questions.js`` opens records.
@@ -18,6 +19,7 @@ import json
 import math
 import os
 import random
+import zlib
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -30,6 +32,8 @@ CELL = 8.0
 """Width of a cell, in tolerances."""
 CLEAR = 1.5
 """How far from a cut every foreseen answer stands, in tolerances."""
+LENGTH = 4
+"""Bytes before what is packed that say how long it is; the rest of a record fills it up."""
 
 Values = Sequence[float]
 
@@ -138,10 +142,11 @@ def seal(question: dict[str, Any], seed: str, keys: Keys | None = None) -> dict[
         ]
     else:
         passwords = [",".join(map(str, answer["value"])) for answer in answers]
-    records, plains = [], [json.dumps(answer).encode() for answer in answers]
-    length = max(map(len, plains))
-    for plain, key in zip(plains, (keys or Keys()).of(passwords, salt), strict=True):
-        padded = plain.ljust(length)  # nor may their length tell which is right
+    records, packed = [], [zlib.compress(json.dumps(answer).encode(), 9) for answer in answers]
+    length = max(map(len, packed))
+    for plain, key in zip(packed, (keys or Keys()).of(passwords, salt), strict=True):
+        # nor may their length tell which is right
+        padded = len(plain).to_bytes(LENGTH, "big") + plain.ljust(length, b"\0")
         nonce = hmac.new(key, padded, "sha256").digest()[:12]  # of the content: no nonce serves twice
         records.append(_text(nonce + AESGCM(key).encrypt(nonce, padded, None)))
     public["records"] = sorted(records)  # nor their order

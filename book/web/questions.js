@@ -4,6 +4,7 @@ import { NoNumber, read } from "./entries.js";
 import { foreseen } from "./sealing.js";
 
 const NOT_YET = "Not yet.";
+const PEACE = 5000; // milliseconds
 
 function report(form, state, lead, html = "") {
   const output = form.querySelector("output");
@@ -53,7 +54,32 @@ async function check(form, sealed) {
   else report(form, "wrong", NOT_YET, verdict?.says ?? form.querySelector("template")?.innerHTML ?? "");
 }
 
-for (const form of document.querySelectorAll("form.dh-question")) {
+/** Put the fields of a question into their places. */
+function fill(form) {
+  for (const place of form.querySelectorAll(".dh-field")) {
+    const field = document.createElement("input");
+    for (const [name, value] of Object.entries(JSON.parse(place.dataset.field))) field.setAttribute(name, value);
+    for (const [name, value] of [["autocapitalize", "off"], ["spellcheck", "false"]]) field.setAttribute(name, value);
+    place.replaceWith(field);
+  }
+}
+
+const forms = document.querySelectorAll("form.dh-question");
+
+// Fields come when the reader comes near, does anything at all, or leaves the page in peace for a while: of fields that
+// are there from the start the browser asks whether they are seen, and so has the whole chapter laid out.
+const near = new IntersectionObserver((entries) => {
+  for (const { target } of entries.filter(({ isIntersecting }) => isIntersecting)) fill(target);
+}, { rootMargin: "1000px" });
+const fillAll = () => {
+  near.disconnect();
+  forms.forEach(fill);
+};
+for (const sign of ["keydown", "pointerdown", "focusin"]) addEventListener(sign, fillAll, { capture: true, once: true });
+addEventListener("load", () => setTimeout(() => (globalThis.requestIdleCallback ?? setTimeout)(fillAll), PEACE));
+
+for (const form of forms) {
+  near.observe(form);
   const sealed = JSON.parse(form.querySelector("script").textContent);
   form.addEventListener("submit", (event) => {
     event.preventDefault();

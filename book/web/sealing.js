@@ -7,6 +7,7 @@ import { gcm } from "@noble/ciphers/aes.js";
 import { pbkdf2Async } from "@noble/hashes/pbkdf2.js";
 import { sha256 } from "@noble/hashes/sha2.js";
 
+const LENGTH = 4; // bytes that say how long what is packed is
 const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 const fromZero = (value, period) => (period === null ? value : value - period * Math.floor(value / period));
 
@@ -27,6 +28,12 @@ const byLibrary = {
   decrypt: async (key, iv, record) => gcm(key, iv).decrypt(record),
 };
 
+/** What was packed before it was sealed. */
+async function unpacked(plain) {
+  const packed = plain.slice(LENGTH, LENGTH + new DataView(plain.buffer, plain.byteOffset).getUint32(0));
+  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"))).json();
+}
+
 /** What the records say that these values open. */
 async function opened(sealed, values, subtle) {
   const { derive, decrypt } = subtle ? byBrowser(subtle) : byLibrary;
@@ -34,7 +41,7 @@ async function opened(sealed, values, subtle) {
   const found = [];
   for (const record of sealed.records.map(bytes)) {
     const plain = await decrypt(key, record.slice(0, 12), record.slice(12)).catch(() => null);
-    if (plain) found.push(JSON.parse(new TextDecoder().decode(plain)));
+    if (plain) found.push(await unpacked(plain));
   }
   return found;
 }

@@ -53,8 +53,9 @@ const VISITS = {
     await pressed(page, 'document.querySelector("dh-link").shadowRoot.querySelector("[aria-label=\'One step on\']")', "Enter");
     const step = await seen(page);
     const form = await page.$("form.dh-question");
+    await form.evaluate((one) => one.scrollIntoView({ block: "center" }));
+    await form.waitForSelector("input"); // which come when the reader comes near
     await form.evaluate((one) => {
-      one.scrollIntoView({ block: "center" });
       const entry = one.querySelector("input");
       if (entry.type === "text") one.querySelectorAll("input").forEach((input) => { input.value = "12345.678"; });
       else entry.checked = true;

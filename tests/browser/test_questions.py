@@ -21,6 +21,7 @@ def page(browser: Any, questions_site: Path) -> Iterator[Any]:
     """The page, from the disk."""
     page = browser.new_page(viewport={"width": 390, "height": 800})
     page.goto(f"{questions_site.as_uri()}/book/questions.html")
+    page.keyboard.press("Shift")  # at any sign of a reader all fields come
     yield page
     page.close()
 
@@ -90,6 +91,22 @@ def test_choices(page: Any) -> None:
     assert check(page, "valid") == "Right. Both of them."
 
 
+def test_fields_come_when_they_are_near_or_the_reader_does_anything(browser: Any, address: str) -> None:
+    """Until then the browser would have all laid out that is far, to ask whether they are seen."""
+    page = browser.new_page(viewport={"width": 390, "height": 800})
+    left = "document.querySelectorAll('.dh-field').length"
+    page.goto(f"{address}/book/classic.html")
+    every = page.evaluate(left)
+    assert every > 20
+    page.locator("form.dh-question").first.scroll_into_view_if_needed()
+    page.locator("form.dh-question input").first.wait_for()
+    assert 0 < page.evaluate(left) < every
+    page.keyboard.press("Shift")
+    assert page.evaluate(left) == 0
+    assert page.evaluate("document.querySelectorAll('form.dh-question input').length") == every
+    page.close()
+
+
 def test_by_keyboard_alone(page: Any) -> None:
     page.locator("#question-reach input").focus()
     page.keyboard.type("0.432")
@@ -114,6 +131,7 @@ def test_where_the_browser_has_no_cryptography(browser: Any, questions_site: Pat
     page = browser.new_page()
     page.add_init_script(NO_SUBTLE)
     page.goto(f"{questions_site.as_uri()}/book/questions.html")
+    page.keyboard.press("Shift")  # at any sign of a reader all fields come
     assert page.evaluate("globalThis.crypto.subtle === undefined")
     assert answer(page, "reach", "0.432").startswith("Right.")
     assert "other link" in answer(page, "reach", "0.15")
@@ -124,6 +142,7 @@ def test_where_the_browser_has_no_cryptography(browser: Any, questions_site: Pat
 def test_axe_finds_nothing(browser: Any, questions_site: Path, root: Path, theme: str) -> None:
     page = browser.new_page(color_scheme=theme)
     page.goto(f"{questions_site.as_uri()}/book/questions.html")
+    page.keyboard.press("Shift")  # at any sign of a reader all fields come
     answer(page, "reach", "7")
     answer(page, "row", "-90", "20")
     page.add_script_tag(path=str(root / "node_modules/axe-core/axe.min.js"))
