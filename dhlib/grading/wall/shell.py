@@ -77,7 +77,8 @@ def run_cell(shell: Any, source: str, seconds: float) -> str | None:
     """Run a cell; return the error it stopped with, if with one."""
     try:
         with time_limit(seconds):
-            result = shell.run_cell(source, store_history=False)
+            # Not what a cell may have put in its place on the shell itself.
+            result = type(shell).run_cell(shell, source, store_history=False)
         error = result.error_before_exec or result.error_in_exec
     except BaseException as stopped:  # SystemExit, KeyboardInterrupt, OutOfTime between two lines
         error = stopped
