@@ -1,6 +1,7 @@
 """The box itself: what is seen in it, how it starts anew, and what holds where a machine has less to offer."""
 
 import io
+import json
 import os
 import shutil
 import signal
@@ -13,6 +14,7 @@ import pytest
 from dhlib.errors import DHError
 from dhlib.grading.notebook import Cell
 from dhlib.grading.wall import Limits, Sandbox, doctor, outer, sandbox, view
+from dhlib.grading.wall import cells as keeping
 from dhlib.grading.wall.sandbox import HOW, STARVED, descendants
 
 REQUESTS = {"A": {"form": "numbers", "shape": []}}
@@ -161,3 +163,17 @@ def test_a_machine_where_no_wall_can_be_built_refuses(monkeypatch, tmp_path, pro
     words = "is not installed" if problem == "missing" else "No permissions to create new namespace"
     assert words in str(refused.value)
     assert "--unsafe-no-sandbox" in str(refused.value)
+
+
+def test_whatever_a_keeper_meets_costs_its_notebook_and_not_the_class(monkeypatch):
+    def meet(*_):
+        raise RuntimeError("something new")
+
+    monkeypatch.setattr(keeping.os, "fork", lambda: 1)
+    monkeypatch.setattr(keeping.Keeper, "_step", meet)
+    notices, own = os.pipe()
+    job = {"cells": [{"source": "", "role": "answer", "part": "A"}], "requests": {}}
+    keeping.Keeper(job, {"cell_seconds": 1}, None, 0, (own, 0)).run(keeping.channel())
+    os.close(own)
+    with os.fdopen(notices) as heard:
+        assert json.loads(heard.read()) == {"lost": "its keeper met RuntimeError('something new')"}

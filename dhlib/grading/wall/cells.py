@@ -33,6 +33,7 @@ from dhlib.grading.wall.shell import read_part, run_cell
 GRACE = 0.5
 #: How long the state before a cell may take to hear that the cell was killed: a machine full of its processes is slow.
 KILL_SECONDS = 3.0
+ENDED = "the program of the notebook ended"
 LONGEST_COMMAND = 1 << 20
 LONGEST_REPORT = 200
 MOST_REPORTS = 10_000
@@ -107,6 +108,8 @@ class Keeper:
                     ours = ours if state == before else []
         except Lost as lost:
             self._notice(lost=str(lost))
+        except Exception as error:  # whatever a notebook made of it, it costs that notebook and not the class
+            self._notice(lost=f"its keeper met {error!r}"[:LONGEST_REPORT])
         else:
             self._notice(done=True)
 
@@ -173,14 +176,17 @@ class Keeper:
             except BlockingIOError:
                 raise Lost("a cell does not listen") from None
             except OSError:
-                raise Lost("the program of the notebook ended") from None
+                raise Lost(ENDED) from None
 
     def _hear(self, deadline: float) -> tuple[int, Any]:
         """The next report and the process it is from; (0, None) after the deadline."""
         while (left := deadline - time.monotonic()) > 0:
             if not select.select([self.socket], [], [], min(left, 1.0))[0]:
                 continue
-            data, extra, _, _ = self.socket.recvmsg(LONGEST_REPORT, 512, socket.MSG_DONTWAIT)
+            try:
+                data, extra, _, _ = self.socket.recvmsg(LONGEST_REPORT, 512, socket.MSG_DONTWAIT)
+            except ConnectionResetError:  # they ended with a command unread
+                raise Lost(ENDED) from None
             self.reports += 1
             if self.reports > MOST_REPORTS:
                 raise Lost("it sent reports without end")
@@ -194,7 +200,7 @@ class Keeper:
                     for fd in received:
                         os.close(fd)
             if not data:
-                raise Lost("the program of the notebook ended")
+                raise Lost(ENDED)
             if pid > 1:
                 with contextlib.suppress(ValueError, RecursionError):
                     return pid, json.loads(data)
