@@ -64,7 +64,8 @@ def test_the_sum_of_memory_is_watched_where_no_control_group_does(walls, monkeyp
     """What takes it is ended, and nothing else."""
     monkeypatch.setattr(sandbox.ControlGroup, "_make", lambda *_: False)
     notebook = [*cells("A = 1"), *cells(f"A = 2\n{GREEDY[way]}\nA = 3"), *cells("A")]
-    with Sandbox(Limits(3.0, 120.0, memory=256 << 20)) as sandbox_:
+    seconds = 3.0 if way == "children" else 60.0
+    with Sandbox(Limits(seconds, 120.0, memory=256 << 20)) as sandbox_:
         outcome = sandbox_.run(notebook, REQUESTS)
     assert outcome.note == ""
     if way == "children":  # the cell that made them goes on, and sleeps too long
@@ -73,6 +74,15 @@ def test_the_sum_of_memory_is_watched_where_no_control_group_does(walls, monkeyp
     else:
         assert value(outcome) == [1.0]
         assert outcome.killers == {2: HOW["died"]}
+
+
+@pytest.mark.sandbox
+def test_a_cell_that_leaves_no_memory_is_left_out(walls):
+    full = "kept, size = [], 1 << 27\nwhile size > 1000:\n    try: kept.append(bytes(size))\n"
+    full += "    except MemoryError: size //= 2"
+    outcome = walls.run([*cells("A = 1"), *cells(f"A = 2\n{full}"), *cells("B = A")], REQUESTS)
+    assert (value(outcome), outcome.note) == ([1.0], "")
+    assert outcome.killers == {2: HOW["died"]}
 
 
 @pytest.mark.sandbox

@@ -36,6 +36,8 @@ KILL_SECONDS = 3.0
 ENDED = "the program of the notebook ended"
 LONGEST_COMMAND = 1 << 20
 LONGEST_REPORT = 200
+#: Memory that a cell leaves to the next, in bytes; asked for and not used.
+ROOM = 16 << 20
 MOST_REPORTS = 10_000
 #: How often a state tries to fork.
 FORKS = 20
@@ -214,7 +216,7 @@ def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, an
     """A state: run the cells that the keeper names, each in a child that becomes the next state. Never returns."""
     # Names of its own for all it needs: a cell may put anything else in place of what modules hold.
     fork, wait, leave, own, group = os.fork, os.waitpid, os._exit, os.getpid, os.setpgid
-    load, dump, nap, threads = json.loads, json.dumps, time.sleep, sys._current_frames
+    load, dump, nap, threads, space = json.loads, json.dumps, time.sleep, sys._current_frames, bytes
 
     def report(word: str, k: int) -> None:
         channel.send(dump([word, k]).encode())
@@ -264,6 +266,7 @@ def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, an
                 if (probe := fork_soon()) == 0:
                     leave(0)
                 wait(probe, 0)
+            space(ROOM)  # so full that nothing more can be run? Then, too.
             report("done", k)
     except BaseException:
         leave(1)

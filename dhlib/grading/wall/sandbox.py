@@ -424,9 +424,11 @@ def _children(pid: int) -> list[int]:
 
 
 def _proportional(pid: int) -> int:
-    """Memory of a process in bytes, its share of what it has in common with others."""
+    """Memory of a process in bytes, its share of what is in common; what is read from files counts for nobody."""
+    found = {"Pss:": 0, "Pss_File:": 0}
     with contextlib.suppress(OSError), Path(f"/proc/{pid}/smaps_rollup").open() as file:
         for line in file:
-            if line.startswith("Pss:"):
-                return int(line.split()[1]) * 1024
-    return 0
+            name, *values = line.split()
+            if name in found:
+                found[name] = int(values[0]) * 1024
+    return found["Pss:"] - found["Pss_File:"]
