@@ -23,7 +23,7 @@ pytestmark = [pytest.mark.sandbox, pytest.mark.slow]
 ROOT = Path(__file__).parents[2]
 IMAGE = "dhlib-grade-in-test"
 SECONDS = "12"
-ATTACKS = ("read_everywhere", "socket_loopback", "library_changed", "exit_at_once", "kill_keeper", "memory_list")
+ATTACKS = ("read_everywhere", "socket_loopback", "library_changed", "exit_at_once", "kill_keeper")
 
 
 def commands():
