@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Callable, Sequence
 
 from dhlib.errors import DHError
 
 #: What `main` returns, and so the exit code of the command.
-DONE, SOME_UNREADABLE, MISUSE = 0, 1, 2
+DONE, SOME_UNREADABLE, MISUSE, STOPPED = 0, 1, 2, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -31,13 +32,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add_merge(commands)
     add_course(commands)
     add_reports(commands)
-    options = parser.parse_args(arguments)
-    run: Callable[[argparse.Namespace], int] = options.run
     try:
+        options = parser.parse_args(arguments)
+        run: Callable[[argparse.Namespace], int] = options.run
         return run(options)
     except DHError as error:
         print(f"dhlib: {error}", file=sys.stderr)
         return MISUSE
+    except BrokenPipeError:  # whoever read what is printed has seen enough, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return STOPPED
     except OSError as error:
         if error.filename is None:  # no file that somebody named
             raise
@@ -45,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return MISUSE
     except KeyboardInterrupt:
         print("dhlib: stopped.", file=sys.stderr)
-        return 130
+        return STOPPED
 
 
 if __name__ == "__main__":

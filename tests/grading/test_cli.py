@@ -137,3 +137,12 @@ def test_pytest_elsewhere_does_not_load_the_library():
     probe = "import sys, pytest_dhlib; print('dhlib' in sys.modules, 'numpy' in sys.modules)"
     said = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
     assert said.stdout.split() == ["False", "False"]
+
+
+def test_a_reader_who_leaves_is_no_error():
+    """As `dhlib grade --doctor | head` leaves."""
+    command = [sys.executable, "-m", "dhlib.cli", "grade", "--doctor"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        process.stdout.close()
+        assert process.stderr.read() == ""
+    assert process.returncode == 130
