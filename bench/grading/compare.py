@@ -303,12 +303,14 @@ def rows() -> Iterator[dict[str, Any]]:
         except NotToBeHad as why:
             yield {"peer": grader.peer, "call": grader.call, "why": str(why)}
             continue
+        ratio = median(b / a for a, b in pairs)
+        print(f"    {ratio:.3g} times as long as ours", file=sys.stderr, flush=True)
         yield {
             "peer": grader.peer,
             "call": grader.call,
             "ours": median(a for a, _ in pairs) / COUNT,
             "each": median(b for _, b in pairs) / COUNT,
-            "ratio": median(b / a for a, b in pairs),
+            "ratio": ratio,
             "marks": grader.call != GRADERS[-1].call,
         }
 
