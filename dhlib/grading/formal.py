@@ -16,6 +16,7 @@ import numpy as np
 from dhlib.errors import DHError
 from dhlib.grading.faults import MISSING, sentence, shape_text
 from dhlib.grading.poses import improper, listed
+from dhlib.grading.sentences import begun
 
 if TYPE_CHECKING:
     from dhlib.chain import Chain
@@ -203,7 +204,7 @@ def _odd_table(form: Form, table: Mapping[str, Any]) -> str:
         if chain.is_symbolic:
             raise DHError(other_symbols(chain))
     except DHError as error:
-        return f"{str(error)[:1].upper()}{str(error)[1:]}"
+        return begun(str(error))
     if convention != form["convention"]:
         return f"This chain is in the {convention} convention; asked for is a {form['convention']} table."
     return ""
@@ -216,7 +217,7 @@ def _odd_frames(form: Form, frames: np.ndarray[tuple[int, ...], np.dtype[np.floa
         if fault := improper(frame[None]):
             return f"Frame {k}: {fault}"
     report = check_frames(frames, form["convention"], tol=5e-3)
-    return "" if report else f"{report.faults[0][:1].upper()}{report.faults[0][1:]}."
+    return "" if report else f"{begun(report.faults[0])}."
 
 
 def _coarse(argument: Any) -> Any:

@@ -10,6 +10,7 @@ from dhlib.grading.forms import Frames
 from dhlib.grading.marks import NEARLY, RIGHT, WRONG, Mark, make_mark
 from dhlib.grading.misconceptions import KNOWN, name_one, told_frames
 from dhlib.grading.poses import improper
+from dhlib.grading.sentences import begun
 from dhlib.preconditions import check_frames
 from dhlib.scalars import FloatArray
 
@@ -31,7 +32,7 @@ def judge_frames(part: Part, asks: Frames, frames: FloatArray) -> Mark:
     try:
         report = check_frames(frames, asks.convention, axes=part.chain, tol=2 * asks.tolerance)
     except DHError as error:
-        return make_mark(part, WRONG, f"{str(error)[:1].upper()}{str(error)[1:]}")
+        return make_mark(part, WRONG, begun(str(error)))
     n = part.chain.n
     if not report:
         fits = [slip for slip, told in told_frames(part.chain, asks.convention) if _same(frames, told, asks)]
@@ -40,7 +41,7 @@ def judge_frames(part: Part, asks: Frames, frames: FloatArray) -> Mark:
         if slip := name_one(fits):
             known = slip.misconception
             return make_mark(part, WRONG, slip.says.format(part=part.id), max(credit, known.credit), known)
-        says = f"{report.faults[0][:1].upper()}{report.faults[0][1:]}."
+        says = f"{begun(report.faults[0])}."
         return make_mark(part, NEARLY if fine == n - 1 else WRONG, says, credit)
     right = chain.frames(np.zeros(n))
     if not _same(frames[:1], right[:1], asks):

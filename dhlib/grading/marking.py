@@ -22,6 +22,7 @@ from dhlib.grading.frames import judge_frames
 from dhlib.grading.marks import COARSE, FOLLOWS, NEARLY, OPEN, REASONED, RIGHT, UNREADABLE, WRONG, Mark, make_mark
 from dhlib.grading.misconceptions import KNOWN, name_one, would_have_given
 from dhlib.grading.poses import describe, improper, listed
+from dhlib.grading.sentences import begun
 from dhlib.grading.tables import judge_table
 from dhlib.grading.terms import slip_in_a_term
 from dhlib.scalars import FloatArray
@@ -205,8 +206,8 @@ def _judge_choice(part: Part, asks: Choice, reading: Mapping[str, Any]) -> Mark:
         options = ", ".join(asks.options)
         return make_mark(part, UNREADABLE, f"It should be one of {options}, in quotation marks.")
     if chosen == asks.right:
-        return make_mark(part, RIGHT, _sentence(asks.options[chosen]))
-    return make_mark(part, WRONG, _sentence(asks.options[chosen]))
+        return make_mark(part, RIGHT, begun(asks.options[chosen]))
+    return make_mark(part, WRONG, begun(asks.options[chosen]))
 
 
 def _judge_reasoned(part: Part, asks: ReasonedChoice, reading: Mapping[str, Any]) -> Mark:
@@ -225,14 +226,14 @@ def _judge_reasoned(part: Part, asks: ReasonedChoice, reading: Mapping[str, Any]
     (option,) = chosen
     false, missing = sorted(letters - asks.needed), asks.needed - letters
     if option != asks.right:
-        says = _sentence(asks.options[option])
+        says = begun(asks.options[option])
         if false:
             says += f" And reason {false[0]} does not hold: {asks.reasons[false[0]].says}"
         elif not letters:
             says += f" Go through the reasons {' '.join(asks.reasons)} first: the choice follows from those that hold."
         return make_mark(part, WRONG, says)
     if not false and not missing:
-        return make_mark(part, RIGHT, _sentence(asks.options[option]))
+        return make_mark(part, RIGHT, begun(asks.options[option]))
     earned = REASONED * max(0, len(letters & asks.needed) - len(false)) / len(asks.needed)
     says = f"The choice {option} is right"
     if not letters:
@@ -240,10 +241,6 @@ def _judge_reasoned(part: Part, asks: ReasonedChoice, reading: Mapping[str, Any]
     if false:
         return make_mark(part, NEARLY, f"{says}, but reason {false[0]} is none: {asks.reasons[false[0]].says}", earned)
     return make_mark(part, NEARLY, f"{says}, and so are the reasons that you give; there are more.", earned)
-
-
-def _sentence(text: str) -> str:
-    return text if text.startswith(("n_", "T_", "A_")) else text[:1].upper() + text[1:]
 
 
 def _plain(text: str) -> str:

@@ -23,6 +23,7 @@ from dhlib.grading.marks import NEARLY, RIGHT, UNREADABLE, WRONG, Mark, make_mar
 from dhlib.grading.misconceptions import KNOWN, OTHER, TRAP, Slip, name_one, retellings
 from dhlib.grading.poses import listed
 from dhlib.grading.retelling import altered, scaled
+from dhlib.grading.sentences import begun
 from dhlib.mechanism import FREEDOMS, Sameness, same_mechanism
 from dhlib.scalars import FloatArray
 from dhlib.table import DEFAULT_COLUMNS
@@ -388,4 +389,4 @@ def _joints(numbers: list[int]) -> str:
 
 def _sentence(text: str) -> str:
     text = text.strip()
-    return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "?", "!")) else ".")
+    return begun(text) + ("" if text.endswith((".", "?", "!")) else ".")

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from dhlib.grading.exercise import Part
 from dhlib.grading.forms import Formula
 from dhlib.grading.poses import listed
+from dhlib.grading.sentences import begun
 from dhlib.scalars import FloatArray
 
 #: A variable as it stands in a term: not at all, as itself or its cosine, as its sine.
@@ -113,7 +114,7 @@ def slip_in_a_term(part: Part, asks: Formula, values: FloatArray, right: FloatAr
     if says and unexplained:
         says = [each.replace("; the rest is right", "").replace(" The rest is right.", "") for each in says]
         says.append(f"{unexplained} other {'entry differs' if unexplained == 1 else 'entries differ'}, too.")
-    return " ".join(f"{each[:1].upper()}{each[1:]}" for each in says)
+    return " ".join(map(begun, says))
 
 
 def _entries(shape: tuple[int, ...], places: list[tuple[int, ...]]) -> str:

@@ -18,6 +18,7 @@ from markupsafe import Markup
 
 from dhlib.grading.reports.cells import number
 from dhlib.grading.reports.shape import number_text
+from dhlib.grading.sentences import begun
 from dhlib.palette import DARK, LIGHT
 from dhlib.scene import Sketch
 
@@ -102,7 +103,7 @@ def _environment() -> Any:
         lstrip_blocks=True,
         undefined=StrictUndefined,
     )
-    pages.filters |= {"number": number, "brief": brief, "capitalize_first": lambda text: text[:1].upper() + text[1:]}
+    pages.filters |= {"number": number, "brief": brief, "begun": begun}
     return pages
 
 
