@@ -135,7 +135,7 @@ def load_paper(
     >>> paper.exercise.points
     30
     >>> [cell.part for cell in paper.cells if cell.role == "given"]
-    ['how', 'figure', 'arm', 'angles', 'ends', 'measured']
+    ['how', 'figure', 'arm', 'angles', 'printed', 'ends', 'measured']
     """
     return Papers(name, folder).of(key, student)
 
