@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from dhlib.grading.notebook import Cell
-from dhlib.grading.wall import Limits, Outcome, sandbox
+from dhlib.grading.wall import Limits, sandbox
 from dhlib.grading.wall.sandbox import BROKEN, STOPPED, Crashed, Run
 
 LIMITS = Limits(cell_seconds=3.0, notebook_seconds=9.0)
@@ -28,7 +28,7 @@ class Played:
         os.set_blocking(answers, False)
         os.set_blocking(notices, False)
         self.box = SimpleNamespace(control=ours, jobs=1, watched=False)
-        self.run = Run(self.box, CELLS, LIMITS, Outcome())
+        self.run = Run(self.box, CELLS, LIMITS, care=False)
         self.run.answers, self.run.notices = answers, notices
         self.run.heard = {answers: b"", notices: b""}
         monkeypatch.setattr(sandbox.time, "monotonic", lambda: self.now)

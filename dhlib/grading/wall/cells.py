@@ -1,12 +1,19 @@
-"""Behind both walls: run a notebook cell by cell, with a process kept before each as a place to go back to.
+"""Behind both walls: run a notebook cell by cell, swiftly first, and with care where something died.
 
 Two kinds of process, both in namespaces of their own:
 
 * the *keeper*, the first process there, runs no code of the student. It says which cell is next, kills what takes too
   long, and tells the controller. Nothing in its namespaces can signal or trace it.
-* a *state* holds the variables of the notebook. To run a cell it forks, and waits: the child runs the cell. If the
-  child dies, the state goes on without that cell; otherwise the child is the new state, and the keeper ends the old
-  one. An answer is read in a child that ends afterwards, so that reading changes nothing.
+* a *state* holds the variables of the notebook.
+
+Nearly all notebooks run to their end, and a fork of a process of this size costs more than most cells. So a notebook
+runs *swiftly* first: one state runs every cell. Should it die, hang, or be left in no condition for the next cell, the
+keeper says "again", and the controller has the notebook run once more, in new walls and with *care*: to run a cell the
+state forks, and waits: the child runs the cell. If the child dies, the state goes on without that cell; otherwise the
+child is the new state, and the keeper ends the old one.
+
+Either way an answer is read in a child that ends afterwards, so that reading changes nothing; only for plain data,
+where reading is none of the student's business, a swift state saves the fork.
 
 A state has run the student's code, and all it says may be a lie. The keeper believes only what the kernel certifies,
 the number of the process that speaks, and relies on it for nothing but the student's own marks.
@@ -17,6 +24,7 @@ from __future__ import annotations
 import array
 import contextlib
 import json
+import mmap
 import os
 import select
 import signal
@@ -27,7 +35,7 @@ import time
 from collections.abc import Sequence
 from typing import Any
 
-from dhlib.grading.wall.shell import read_part, run_cell
+from dhlib.grading.wall.shell import read_part, reads_plainly, run_cell
 
 #: How long a cell may take beyond its time to stop by itself, and a state to say that a cell has ended.
 GRACE = 0.5
@@ -65,7 +73,7 @@ class Keeper:
     job : dict
         ``{"cells": [{"source", "role", "part"}, …], "requests": {part: request}}``.
     limits : dict
-        With ``cell_seconds``.
+        With ``cell_seconds``, and whether to run with ``care``.
     shell
         Pristine; only states use it.
     answers : int
@@ -79,6 +87,7 @@ class Keeper:
     ) -> None:
         self.job, self.shell = job, shell
         self.seconds = float(limits["cell_seconds"])
+        self.care = bool(limits["care"])
         self.answers, self.own = answers, own
         self.reports = 0
 
@@ -88,14 +97,15 @@ class Keeper:
         cells = self.job["cells"]
         # What is asked about the answers stays here until it is: a cell need not know.
         requests = self.job["requests"]
-        state = os.fork()
-        if state == 0:
+        self.state = os.fork()
+        if self.state == 0:
             del self.job
             self.socket.close()
             for fd in self.own:
                 os.close(fd)
-            live(theirs, cells, self.shell, self.answers, self.seconds)
+            live(theirs, cells, self.shell, self.answers, self.seconds, self.care)
         theirs.close()
+        step = self._step if self.care else self._stride
         try:
             ours: list[int] = []  # cells of the exercise that wait to run with the next one
             for k, cell in enumerate(cells):
@@ -103,21 +113,33 @@ class Keeper:
                     ours.append(k)
                 elif cell["role"] == "check":
                     if ours:
-                        state, ours = self._step(ours, None, state), []
-                    state = self._step([k], requests.get(cell["part"], {}), state)
-                else:
-                    before, state = state, self._step([*ours, k], None, state)
-                    ours = ours if state == before else []
+                        step(ours, None)
+                        ours = []
+                    step([k], requests.get(cell["part"], {}))
+                elif step([*ours, k], None):
+                    ours = []
         except Lost as lost:
-            self._notice(lost=str(lost))
+            self._notice(**({"lost": str(lost)} if self.care else {"again": True}))
         except Exception as error:  # whatever a notebook made of it, it costs that notebook and not the class
             self._notice(lost=f"its keeper met {error!r}"[:LONGEST_REPORT])
         else:
             self._notice(done=True)
 
-    def _step(self, run: list[int], request: Any, state: int) -> int:
-        """Run cells from a state, or read an answer; return the next state, the same if the last cell was lost."""
-        k = run[-1]
+    def _stride(self, run: list[int], request: Any) -> bool:
+        """Have the one state run cells, or read an answer; anything else than its success is a loss."""
+        self._send({"run": run, "request": request})
+        success = ["done" if request is None else "read", run[-1]]
+        deadline = time.monotonic() + self.seconds + GRACE
+        while True:
+            pid, said = self._hear(deadline)
+            if pid == self.state and said == success:
+                return True
+            if pid in (0, self.state):
+                raise Lost("a cell needs care")
+
+    def _step(self, run: list[int], request: Any) -> bool:
+        """Run cells from the state, or read an answer; whether there is a new state, so that no cell was lost."""
+        k, state = run[-1], self.state
         self._send({"run": run, "request": request})
         deadline = time.monotonic() + self.seconds + GRACE
         runner = 0
@@ -127,19 +149,20 @@ class Keeper:
                 if not runner or not self._kill(runner, k, state):
                     raise Lost("a cell could not be stopped")
                 self._notice(killed=k, how="time")
-                return state
+                return False
             if pid == state and said == ["died", k]:
                 self._notice(killed=k, how="died")
                 self._sweep(runner)
-                return state
+                return False
             if pid == state and said == ["read", k] and request is not None:
-                return state
+                return False
             if said == ["begin", k] and not runner and pid != state:
                 runner = pid
             elif said == ["done", k] and pid == runner and request is None:
                 os.kill(state, signal.SIGKILL)
                 self._reap()
-                return runner
+                self.state = runner
+                return True
 
     def _kill(self, runner: int, k: int, state: int) -> bool:
         """End a cell; whether the state before it can go on."""
@@ -212,11 +235,13 @@ class Keeper:
         os.write(self.own[0], json.dumps(notice).encode() + b"\n")
 
 
-def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, answers: int, seconds: float) -> None:
-    """A state: run the cells that the keeper names, each in a child that becomes the next state. Never returns."""
+def live(
+    channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, answers: int, seconds: float, care: bool
+) -> None:
+    """A state: run the cells that the keeper names, with care each in a child that is the next state. Never returns."""
     # Names of its own for all it needs: a cell may put anything else in place of what modules hold.
     fork, wait, leave, own, group = os.fork, os.waitpid, os._exit, os.getpid, os.setpgid
-    load, dump, nap, threads, space = json.loads, json.dumps, time.sleep, sys._current_frames, bytes
+    load, dump, nap, threads, space = json.loads, json.dumps, time.sleep, sys._current_frames, mmap.mmap
 
     def report(word: str, k: int) -> None:
         channel.send(dump([word, k]).encode())
@@ -235,38 +260,46 @@ def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, an
                 nap(0.01)
         return fork()
 
+    private = mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS
     me = own()
     try:
         while True:
             command = channel.recv(LONGEST_COMMAND)
             if own() != me or not command:  # a copy that a cell made of itself
                 leave(0)
-            child = fork_soon()
-            if child:
-                asked = load(command)
-                status = wait(child, 0)[1]
-                report("read" if asked["request"] is not None and status == 0 else "died", asked["run"][-1])
-                continue
-            me = own()
-            group(0, 0)
             asked = load(command)
             k = asked["run"][-1]
-            report("begin", k)
-            if asked["request"] is not None:
-                part = cells[k]["part"]
-                answer({"part": part, "reading": read_part(shell, part, asked["request"], seconds)})
-                leave(0)
+            part, request = cells[k]["part"], asked["request"]
+            swift = not care and (request is None or reads_plainly(request, shell.user_ns.get(part)))
+            if not swift:
+                if child := fork_soon():
+                    status = wait(child, 0)[1]
+                    report("read" if request is not None and status == 0 else "died", k)
+                    continue
+                me = own()
+                group(0, 0)
+            if care:
+                report("begin", k)
+            if request is not None:
+                answer({"part": part, "reading": read_part(shell, part, request, seconds)})
+                if not swift:
+                    leave(0)
+                report("read", k)
+                continue
             for one in asked["run"]:
                 error = run_cell(shell, cells[one]["source"], seconds)
                 if own() != me:
                     leave(0)
                 if error is not None:
                     answer({"cell": one, "error": error})
-            if len(threads()) > 1:  # so many that no process is left for the next cell? Then this cell is lost instead.
+            if len(threads()) > 1:
+                if not care:  # they would live on beside the next cell, which no fork lets them
+                    leave(0)
+                # so many that no process is left for the next cell? Then this cell is lost instead.
                 if (probe := fork_soon()) == 0:
                     leave(0)
                 wait(probe, 0)
-            space(ROOM)  # so full that nothing more can be run? Then, too.
+            space(-1, ROOM, private).close()  # so full that nothing more can be run? Then, too.
             report("done", k)
     except BaseException:
         leave(1)

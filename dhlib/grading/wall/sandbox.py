@@ -126,24 +126,29 @@ class Sandbox:
         data = json.dumps(job).encode()
         if len(data) > LARGEST_JOB:
             return Outcome(note="The code of the notebook is too long to be run.")
+        care = broken = False
         deadline = time.monotonic() + limits.notebook_seconds
-        for last in (False, True):
-            # A box that was broken, perhaps from without, is built anew once, within the notebook's time.
+        while True:
             if self._box is None:
                 started = time.monotonic()
                 self._box = Box(self._outer, self._filter, self.limits)
                 deadline += time.monotonic() - started
-            outcome = Outcome()
+            run = Run(self._box, cells, limits, care)
+            outcome = run.outcome
             try:
-                Run(self._box, cells, limits, outcome).run(data, deadline)
+                run.run(data, deadline)
             except Crashed:
                 self.close()
                 outcome.note = outcome.note or BROKEN
-                if last or outcome.note != BROKEN or time.monotonic() > deadline:
+                # A box that was broken, perhaps from without, is built anew once, within the notebook's time.
+                if broken or outcome.note != BROKEN or time.monotonic() > deadline:
                     return outcome
+                broken = True
             else:
-                break
-        return outcome
+                if not run.again or outcome.note:
+                    return outcome
+                # Nothing is kept of a run in which a cell died; the one with care has all the time anew.
+                care, deadline = True, time.monotonic() + limits.notebook_seconds
 
     def close(self) -> None:
         """End the box and all that runs in it; the next `run` would start one anew."""
@@ -251,10 +256,12 @@ class Box:
 
 
 class Run:
-    """One notebook in a box."""
+    """One notebook in a box, swiftly or with care."""
 
-    def __init__(self, box: Box, cells: Sequence[Cell], limits: Limits, outcome: Outcome) -> None:
-        self.box, self.cells, self.limits, self.outcome = box, cells, limits, outcome
+    def __init__(self, box: Box, cells: Sequence[Cell], limits: Limits, care: bool) -> None:
+        self.box, self.cells, self.limits, self.care = box, cells, limits, care
+        self.outcome = Outcome()
+        self.again = False  # whether it needs care
         self.parts = {cell.part for cell in cells if cell.role == "check"}
         self.budget = limits.output_bytes
         self.finished = False
@@ -272,7 +279,7 @@ class Run:
             theirs = [job_out, answers_in, notices_in]
             self.box.jobs += 1
             limits = asdict(self.limits)
-            limits |= {"others": self.box.others, "base": SERVER_MEMORY, "job": self.box.jobs}
+            limits |= {"others": self.box.others, "base": SERVER_MEMORY, "job": self.box.jobs, "care": self.care}
             try:
                 socket.send_fds(self.box.control, [json.dumps(limits).encode()], theirs)
             except OSError:
@@ -284,7 +291,7 @@ class Run:
                 os.set_blocking(fd, False)
             self.heard = {self.answers: b"", self.notices: b""}
             self._converse(memoryview(job), to_box, deadline)
-        if not self.finished and not self.outcome.note:
+        if not (self.finished or self.again or self.outcome.note):
             self.outcome.note = LOST.format(why="its program ended")
 
     def _converse(self, job: memoryview, to_box: IO[bytes], deadline: float) -> None:
@@ -371,6 +378,8 @@ class Run:
                 self.outcome.note = self.outcome.note or LOST.format(why=why)
             case {"failed": str(why)}:
                 raise DHError(f"a box for the notebook could not be set up: {why}")
+            case {"again": True} if not self.care:
+                self.again = True
             case {"done": True}:
                 self.finished = True
 

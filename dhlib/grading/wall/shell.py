@@ -8,7 +8,14 @@ import signal
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
+from dhlib.grading.answers import MOST_ENTRIES
 from dhlib.grading.wall.limits import LONGEST_ERROR
+
+#: Forms whose requests hold no probe.
+PLAIN_FORMS = frozenset({"numbers", "frames", "table", "choice", "reasoned"})
+PLAIN_TYPES = frozenset({type(None), type(...), bool, int, float, complex, str, np.float64, np.int64})
 
 
 class OutOfTime(BaseException):
@@ -92,6 +99,21 @@ def in_words(error: BaseException) -> str:
     except BaseException:
         text = "an error without words"
     return f"{type(error).__name__[:LONGEST_ERROR]}: {text}"[:LONGEST_ERROR]
+
+
+def reads_plainly(request: dict[str, Any], value: Any) -> bool:
+    """Whether an answer is read without running anything of the student's, and its request tells nothing."""
+    return request.get("form") in PLAIN_FORMS and _is_plain(value)
+
+
+def _is_plain(value: Any, depth: int = 3) -> bool:
+    """Numbers and text as Python and numpy have them, in lists of lists; no subclass, which may do as it likes."""
+    kind = type(value)
+    if kind in (list, tuple):
+        return depth > 0 and len(value) <= MOST_ENTRIES and all(_is_plain(item, depth - 1) for item in value)
+    if kind is np.ndarray:
+        return value.dtype.kind in "biufc"
+    return kind in PLAIN_TYPES
 
 
 def read_part(shell: Any, part: str, request: dict[str, Any], seconds: float) -> dict[str, Any]:
