@@ -2,9 +2,34 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from dhlib.grading.notebook import Cell
+from dhlib.grading.wall import sandbox as trusted
+from dhlib.grading.wall.shell import reads_plainly
+
+
+@pytest.fixture
+def runs(monkeypatch):
+    """Run a notebook of two parts; ``runs.cared`` says of each of its runs whether that was with care."""
+
+    class Noted(trusted.Run):
+        def __init__(self, box, cells, limits, care):
+            super().__init__(box, cells, limits, care)
+            runs.cared.append(care)
+
+    def runs(sandbox, first, second="B = 2"):
+        cells = [
+            Cell("import math", role="setup"),
+            Cell(first, role="answer", part="A"), Cell("", role="check", part="A"),
+            Cell(second, role="answer", part="B"), Cell("", role="check", part="B"),
+        ]  # fmt: skip
+        return sandbox.run(cells, {part: {"form": "numbers", "shape": []} for part in "AB"})
+
+    runs.cared = []
+    monkeypatch.setattr(trusted, "Run", Noted)
+    return runs
 
 
 def test_answers_come_back(run):
@@ -113,3 +138,61 @@ def test_no_reference_and_no_marking_is_loaded_in_the_box(run):
         " 'dhlib.grading.misconceptions', 'dhlib.grading.check', 'dhlib_exercise_quickshot'))"
     )
     assert run(loaded).readings["A"] == {"values": [0.0]}
+
+
+COUNTS_ITSELF = "import os\nos.mkdir('mine')\nA = len(os.listdir('.'))"
+
+
+@pytest.mark.sandbox
+def test_a_notebook_that_needs_no_care_runs_once(walls, runs):
+    runs(walls, "A = 1")
+    assert runs.cared == [False]
+
+
+@pytest.mark.sandbox
+@pytest.mark.parametrize(
+    "second",
+    [
+        "import os; os._exit(0)",
+        "import threading, time; threading.Thread(target=time.sleep, args=(60,), daemon=True).start(); B = 2",
+    ],
+    ids=["dies", "leaves a thread"],
+)
+def test_care_starts_from_nothing(walls, runs, second):
+    outcome = runs(walls, COUNTS_ITSELF, second)
+    assert runs.cared == [False, True]
+    assert outcome.readings["A"] == {"values": [1.0]}, "a folder of the first run was still there"
+    assert (list(outcome.killers) == [3]) == ("_exit" in second)
+    assert outcome.note == ""
+
+
+@pytest.mark.sandbox
+@pytest.mark.parametrize(
+    "answer",
+    ["class List(list):\n    {}\nA = List([1])", "class A:\n    def __float__(self): pass\n    {}\nA = A()"],
+    ids=["list", "number"],
+)
+def test_reading_what_is_no_plain_data_changes_nothing(walls, answer):
+    """Its own code runs when it is read, in a process that ends afterwards."""
+    spy = "def __getattribute__(self, name):\n        global seen\n        seen = 1\n        raise ValueError"
+    cells = [
+        Cell("seen = 0\n" + answer.format(spy), role="answer", part="A"), Cell("", role="check", part="A"),
+        Cell("B = seen", role="answer", part="B"), Cell("", role="check", part="B"),
+    ]  # fmt: skip
+    outcome = walls.run(cells, {"A": {"form": "numbers", "shape": [1]}, "B": {"form": "numbers", "shape": []}})
+    assert outcome.readings["A"].get("fault") == "unreadable"
+    assert outcome.readings["B"] == {"values": [0.0]}
+
+
+@pytest.mark.parametrize(
+    ("value", "plain"),
+    [
+        (1, True), (2.5, True), ("b", True), (None, True), (np.eye(4), True), ([[1, 2], (3, np.float64(4))], True),
+        (True, True), (np.array([object()]), False), (type("L", (list,), {})(), False), (np.zeros(1).view(type("A", (np.ndarray,), {})), False),
+        ({"a": 1}, False), (len, False), ([[[[1]]]], False), ([print], False), ([0] * 1000, False),
+    ],
+)  # fmt: skip
+def test_plain_data_is_known_by_its_very_type(value, plain):
+    assert reads_plainly({"form": "numbers"}, value) == plain
+    assert not reads_plainly({"form": "function", "calls": []}, value)
+    assert not reads_plainly({"form": "formula", "points": []}, value)
