@@ -188,7 +188,8 @@ def test_reading_what_is_no_plain_data_changes_nothing(walls, answer):
     ("value", "plain"),
     [
         (1, True), (2.5, True), ("b", True), (None, True), (np.eye(4), True), ([[1, 2], (3, np.float64(4))], True),
-        (True, True), (np.array([object()]), False), (type("L", (list,), {})(), False), (np.zeros(1).view(type("A", (np.ndarray,), {})), False),
+        (True, True), (np.array([object()]), False), (type("L", (list,), {})(), False),
+        (np.zeros(1).view(type("A", (np.ndarray,), {})), False),
         ({"a": 1}, False), (len, False), ([[[[1]]]], False), ([print], False), ([0] * 1000, False),
     ],
 )  # fmt: skip
