@@ -31,6 +31,8 @@ from environment import NotToBeHad, python_of, size, version_of
 
 COUNT = size(30, 2)
 ROUNDS = size(3, 1)
+#: A large class, in which a start does not count; once, since it takes a peer many minutes.
+CLASS = size(300, 3)
 #: How long a command may take, in seconds; None is for ever.
 patience: float | None = None
 HUNG = "hung"
@@ -278,10 +280,10 @@ def ensured(folder: Path) -> Path:
     return folder
 
 
-def timed(grader: Grader) -> float:
-    """Grade the class once; check the marks; return the seconds."""
+def timed(grader: Grader, count: int = COUNT) -> float:
+    """Grade a class once; check the marks; return the seconds."""
     _taken.clear()
-    planned = students(COUNT)
+    planned = students(count)
     with tempfile.TemporaryDirectory() as name:
         marks = grader.grade(Path(name), {who: work.answers(right) for who, right in planned.items()})
     if marks is not None and marks != planned:
@@ -315,6 +317,17 @@ def rows() -> Iterator[dict[str, Any]]:
         }
 
 
+def large_class() -> dict[str, Any]:
+    """Time a large class, ours before and after the grader that most courses use."""
+    ours, grader = GRADERS[:2]
+    print(f"  grading: {grader.call}, {CLASS} notebooks", file=sys.stderr, flush=True)
+    before, peer, after = timed(ours, CLASS), timed(grader, CLASS), timed(ours, CLASS)
+    mine = median((before, after))
+    print(f"    {peer / mine:.3g} times as long as ours", file=sys.stderr, flush=True)
+    about = {"peer": grader.peer, "call": grader.call, "count": CLASS}
+    return about | {"ours": mine / CLASS, "each": peer / CLASS, "ratio": peer / mine}
+
+
 def main() -> None:
     """Print one JSON object."""
     found = list(rows())
@@ -327,6 +340,7 @@ def main() -> None:
             "missing": {row["call"]: row["why"] for row in found if "why" in row},
             "versions": versions,
             "count": COUNT,
+            "large": large_class(),
             "cores": os.cpu_count(),
         },
         sys.stdout,
