@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
-from sampling import FULL
+from sampling import FULL, some
 
 from dhlib import Chain, robots
 from dhlib.grading.course.variants import Variants
@@ -21,6 +21,7 @@ from dhlib.grading.sections import CHAPTERS
 #: without p is transposed by turning the other way, and one entry tells less than a matrix.
 NAMED = 0.95
 ROOT = Path(__file__).parents[2]
+VALUED = ("axes_to_table", "convert", "pa10_6c", "pa10_7c", "puma560", "quickshot", "same_arm", "scara", "stanford")
 FIGURES = read(ROOT / "book" / "diagnosis.csv")
 
 
@@ -36,9 +37,7 @@ def test_every_misconception_is_named_and_every_right_answer_known(every, result
     assert as_row(tally) == FIGURES[every.name], "run make diagnosis"
 
 
-@pytest.mark.parametrize(
-    "name", ["axes_to_table", "convert", "pa10_6c", "pa10_7c", "puma560", "quickshot", "same_arm", "scara", "stanford"]
-)
+@pytest.mark.parametrize("name", some(VALUED, 4, "own numbers"))
 def test_misconceptions_are_named_with_a_students_own_numbers_too(name):
     """By value, since that is what other numbers change: none passes, and as many are told exactly."""
     variants = Variants(name, ROOT / "exercises")
