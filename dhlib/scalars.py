@@ -147,11 +147,12 @@ def cos_sin(angle: Scalar) -> tuple[Scalar, Scalar]:
     >>> cos_sin(math.pi / 2)
     (0.0, 1.0)
     """
-    if is_symbolic(angle):
-        sympy = sys.modules["sympy"]
-        return sympy.cos(angle), sympy.sin(angle)
-    if isinstance(angle, np.ndarray):
-        return without_rounding(np.cos(angle)), without_rounding(np.sin(angle))
+    if type(angle) is not float:  # asked first, since one pose asks it for every joint
+        if is_symbolic(angle):
+            sympy = sys.modules["sympy"]
+            return sympy.cos(angle), sympy.sin(angle)
+        if isinstance(angle, np.ndarray):
+            return without_rounding(np.cos(angle)), without_rounding(np.sin(angle))
     c, s = math.cos(angle), math.sin(angle)
     return (0.0 if -ROUNDING < c < ROUNDING else c, 0.0 if -ROUNDING < s < ROUNDING else s)
 
