@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dhlib.grading.notebook import Cell
+from dhlib.grading.wall import Limits
 from dhlib.grading.wall import sandbox as trusted
 from dhlib.grading.wall.shell import reads_plainly
 
@@ -15,19 +16,20 @@ def runs(monkeypatch):
     """Run a notebook of two parts; ``runs.cared`` says of each of its runs whether that was with care."""
 
     class Noted(trusted.Run):
-        def __init__(self, box, cells, limits, care):
-            super().__init__(box, cells, limits, care)
+        def __init__(self, box, cells, limits, care, hung):
+            super().__init__(box, cells, limits, care, hung)
             runs.cared.append(care)
+            runs.hung.append(hung)
 
-    def runs(sandbox, first, second="B = 2"):
+    def runs(sandbox, first, second="B = 2", limits=None):
         cells = [
             Cell("import math", role="setup"),
             Cell(first, role="answer", part="A"), Cell("", role="check", part="A"),
             Cell(second, role="answer", part="B"), Cell("", role="check", part="B"),
         ]  # fmt: skip
-        return sandbox.run(cells, {part: {"form": "numbers", "shape": []} for part in "AB"})
+        return sandbox.run(cells, {part: {"form": "numbers", "shape": []} for part in "AB"}, limits)
 
-    runs.cared = []
+    runs.cared, runs.hung = [], []
     monkeypatch.setattr(trusted, "Run", Noted)
     return runs
 
@@ -164,6 +166,15 @@ def test_care_starts_from_nothing(walls, runs, second):
     assert outcome.readings["A"] == {"values": [1.0]}, "a folder of the first run was still there"
     assert (list(outcome.killers) == [3]) == ("_exit" in second)
     assert outcome.note == ""
+
+
+@pytest.mark.sandbox
+def test_what_never_ended_is_not_tried_again(walls, runs):
+    stubborn = "while True:\n    try:\n        while True: pass\n    except BaseException: pass"
+    outcome = runs(walls, "A = 1", stubborn, Limits(cell_seconds=1.0, notebook_seconds=30.0))
+    assert (runs.cared, runs.hung) == ([False, True], [None, 3])
+    assert outcome.readings == {"A": {"values": [1.0]}, "B": {"fault": "undefined"}}
+    assert (outcome.killers, outcome.note) == ({3: "never ended"}, "")
 
 
 @pytest.mark.sandbox

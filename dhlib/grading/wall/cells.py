@@ -57,6 +57,14 @@ class Lost(Exception):
     """The notebook cannot go on."""
 
 
+class Hung(Lost):
+    """It cannot, since a cell has not ended in its time."""
+
+    def __init__(self, cell: int) -> None:
+        super().__init__("a cell never ends")
+        self.cell = cell
+
+
 def channel() -> tuple[socket.socket, socket.socket]:
     """A pair of sockets, for the keeper and the states; the keeper's end says which process speaks."""
     keeper, states = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -73,7 +81,7 @@ class Keeper:
     job : dict
         ``{"cells": [{"source", "role", "part"}, …], "requests": {part: request}}``.
     limits : dict
-        With ``cell_seconds``, and whether to run with ``care``.
+        With ``cell_seconds``, whether to run with ``care``, and which cell ``hung`` before: it is not tried again.
     shell
         Pristine; only states use it.
     answers : int
@@ -87,7 +95,7 @@ class Keeper:
     ) -> None:
         self.job, self.shell = job, shell
         self.seconds = float(limits["cell_seconds"])
-        self.care = bool(limits["care"])
+        self.care, self.hung = bool(limits["care"]), limits["hung"]
         self.answers, self.own = answers, own
         self.reports = 0
 
@@ -119,7 +127,10 @@ class Keeper:
                 elif step([*ours, k], None):
                     ours = []
         except Lost as lost:
-            self._notice(**({"lost": str(lost)} if self.care else {"again": True}))
+            if self.care:
+                self._notice(lost=str(lost))
+            else:
+                self._notice(again=True, hung=lost.cell if isinstance(lost, Hung) else None)
         except Exception as error:  # whatever a notebook made of it, it costs that notebook and not the class
             self._notice(lost=f"its keeper met {error!r}"[:LONGEST_REPORT])
         else:
@@ -134,12 +145,17 @@ class Keeper:
             pid, said = self._hear(deadline)
             if pid == self.state and said == success:
                 return True
-            if pid in (0, self.state):
+            if pid == 0:
+                raise Hung(run[-1])
+            if pid == self.state:
                 raise Lost("a cell needs care")
 
     def _step(self, run: list[int], request: Any) -> bool:
         """Run cells from the state, or read an answer; whether there is a new state, so that no cell was lost."""
         k, state = run[-1], self.state
+        if k == self.hung:
+            self._notice(killed=k, how="time")
+            return False
         self._send({"run": run, "request": request})
         deadline = time.monotonic() + self.seconds + GRACE
         runner = 0

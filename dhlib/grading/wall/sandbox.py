@@ -126,14 +126,14 @@ class Sandbox:
         data = json.dumps(job).encode()
         if len(data) > LARGEST_JOB:
             return Outcome(note="The code of the notebook is too long to be run.")
-        care = broken = False
+        care, hung, broken = False, None, False
         deadline = time.monotonic() + limits.notebook_seconds
         while True:
             if self._box is None:
                 started = time.monotonic()
                 self._box = Box(self._outer, self._filter, self.limits)
                 deadline += time.monotonic() - started
-            run = Run(self._box, cells, limits, care)
+            run = Run(self._box, cells, limits, care, hung)
             outcome = run.outcome
             try:
                 run.run(data, deadline)
@@ -147,8 +147,11 @@ class Sandbox:
             else:
                 if not run.again or outcome.note:
                     return outcome
-                # Nothing is kept of a run in which a cell died; the one with care has all the time anew.
-                care, deadline = True, time.monotonic() + limits.notebook_seconds
+                # Nothing is kept of a run in which a cell died; the one with care has all the time anew. Only where a
+                # cell never ended, it is not tried again, and its time is used up.
+                care, hung, deadline = True, run.hung, time.monotonic() + limits.notebook_seconds
+                if hung is not None:
+                    deadline -= limits.cell_seconds
 
     def close(self) -> None:
         """End the box and all that runs in it; the next `run` would start one anew."""
@@ -258,8 +261,8 @@ class Box:
 class Run:
     """One notebook in a box, swiftly or with care."""
 
-    def __init__(self, box: Box, cells: Sequence[Cell], limits: Limits, care: bool) -> None:
-        self.box, self.cells, self.limits, self.care = box, cells, limits, care
+    def __init__(self, box: Box, cells: Sequence[Cell], limits: Limits, care: bool, hung: int | None = None) -> None:
+        self.box, self.cells, self.limits, self.care, self.hung = box, cells, limits, care, hung
         self.outcome = Outcome()
         self.again = False  # whether it needs care
         self.parts = {cell.part for cell in cells if cell.role == "check"}
@@ -279,7 +282,8 @@ class Run:
             theirs = [job_out, answers_in, notices_in]
             self.box.jobs += 1
             limits = asdict(self.limits)
-            limits |= {"others": self.box.others, "base": SERVER_MEMORY, "job": self.box.jobs, "care": self.care}
+            limits |= {"others": self.box.others, "base": SERVER_MEMORY, "job": self.box.jobs}
+            limits |= {"care": self.care, "hung": self.hung}
             try:
                 socket.send_fds(self.box.control, [json.dumps(limits).encode()], theirs)
             except OSError:
@@ -378,8 +382,8 @@ class Run:
                 self.outcome.note = self.outcome.note or LOST.format(why=why)
             case {"failed": str(why)}:
                 raise DHError(f"a box for the notebook could not be set up: {why}")
-            case {"again": True} if not self.care:
-                self.again = True
+            case {"again": True, "hung": int() | None as hung} if not self.care:
+                self.again, self.hung = True, hung
             case {"done": True}:
                 self.finished = True
 
