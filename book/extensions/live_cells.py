@@ -337,7 +337,7 @@ def add_progress(app: Sphinx, doctree: nodes.document, page: str) -> None:
         return
     here = posixpath.dirname(app.builder.get_target_uri(page))
     exercises = []
-    for other in sorted(app.env.found_docs):
+    for other in app.env.collect_relations():  # in the order of the book
         if is_exercise(app, other):
             told, _ = exercise_of(app, other)
             if "honest" in told:

@@ -92,6 +92,14 @@ def test_a_full_stop_stays_beside_its_formula(site: Path) -> None:
     assert lone_marks(pages["placing.html"].replace('<span class="kept">', "<span>"))
 
 
+def test_progress_is_told_in_the_order_of_the_book(site: Path, root: Path) -> None:
+    page = BeautifulSoup((site / "book" / "progress.html").read_text("utf-8"), "html.parser")
+    shown = [link["href"] for link in page.select(".dh-progress tr a")]
+    exercises = re.findall(r"file: exercises/(\w+)", (root / "_toc.yml").read_text("utf-8"))
+    assert shown == [f"../exercises/{name}.html" for name in exercises]
+    assert shown != sorted(shown)
+
+
 def test_icons_are_few_and_all_there(site: Path) -> None:
     """Every icon that a page names has its rule, and every rule its glyph."""
     fonts = list((site / "_static").rglob("*.woff2"))
