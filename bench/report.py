@@ -395,7 +395,7 @@ def many(result: Result) -> list[Table]:
     return [
         Table(
             "A class of any size",
-            "`dhlib grade` with its sandbox, the whole command; CPU is that of all processes. Memory is the largest "
+            "`dhlib grade` with its sandbox, the whole command. CPU is that of the grader itself, not of what ran within the walls. Memory is the largest "
             "part of it that was theirs at any time: of the process that watches, and of all together.",
             ["notebooks", "time", "for each", "CPU for each", "in a minute", "watching", "all processes"],
             rows,
@@ -410,7 +410,7 @@ def _each(*values: float) -> str:
 
 
 def _rate(*values: float) -> str:
-    return " – ".join(dict.fromkeys(f"{60 / value:.3g}" for value in values))
+    return " – ".join(dict.fromkeys(f"{60 / value:.3g}" if value > 0.6 else f"{60 / value:.0f}" for value in values))
 
 
 def hostile(result: Result) -> list[Table]:
