@@ -395,9 +395,9 @@ def many(result: Result) -> list[Table]:
     return [
         Table(
             "A class of any size",
-            "`dhlib grade` with its sandbox, the whole command. CPU is that of the grader itself, not of what ran within "
-            "the walls. Memory is the largest part of it that was theirs at any time: of the process that watches, and "
-            "of all together.",
+            "`dhlib grade` with its sandbox, the whole command. CPU is that of the grader itself, not of what ran "
+            "within the walls. Memory is the largest part of it that was theirs at any time: of the process that "
+            "watches, and of all together.",
             ["notebooks", "time", "for each", "CPU for each", "in a minute", "watching", "all processes"],
             rows,
             _missing(result),
