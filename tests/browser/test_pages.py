@@ -53,22 +53,15 @@ COMBINATIONS = list(product(("http", "file"), (1280, 390), ("light", "dark")))
 
 
 def pages_in(site: Path, combination: int) -> list[str]:
-    """Return the pages to open in a combination: each page in two that share nothing, in all if the long parts run."""
-    mirrored = len(COMBINATIONS) - 1 - combination
-    return [
-        name
-        for k, name in enumerate(pages_of(site))
-        if name != "index.html"  # leads on to the first page
-        and (FULL or k % (len(COMBINATIONS) // 2) == min(combination, mirrored))
-    ]
+    """Return the pages to open in a combination: each page in one, in all if the long parts run."""
+    pages = [name for name in pages_of(site) if name != "index.html"]  # that one leads on to the first page
+    return pages if FULL else pages[combination :: len(COMBINATIONS)]
 
 
-def test_each_page_is_opened_both_ways(site: Path) -> None:
-    opened = [(name, way) for k, way in enumerate(COMBINATIONS) for name in pages_in(site, k)]
-    for name in pages_of(site):
-        ways = [way for page, way in opened if page == name]
-        assert [len(set(values)) for values in zip(*ways, strict=True)] == ([2, 2, 2] if ways else []), name
-    assert len({name for name, _ in opened}) == len(pages_of(site)) - 1
+def test_each_page_is_opened_and_some_in_each_way(site: Path) -> None:
+    opened = [pages_in(site, k) for k in range(len(COMBINATIONS))]
+    assert min(map(len, opened)) >= 5
+    assert {name for names in opened for name in names} == set(pages_of(site)) - {"index.html"}
 
 
 @pytest.mark.parametrize("combination", range(len(COMBINATIONS)), ids=lambda k: "-".join(map(str, COMBINATIONS[k])))

@@ -8,6 +8,7 @@ import pytest
 from dhlib.grading.notebook import Cell
 from dhlib.grading.wall import Limits
 from dhlib.grading.wall import sandbox as trusted
+from dhlib.grading.wall.cells import SWIFT_SECONDS
 from dhlib.grading.wall.shell import reads_plainly
 
 
@@ -169,9 +170,17 @@ def test_care_starts_from_nothing(walls, runs, second):
 
 
 @pytest.mark.sandbox
+def test_what_ran_for_longer_than_a_moment_is_kept(walls, runs):
+    outcome = runs(walls, f"import time; time.sleep({SWIFT_SECONDS}); A = 1", "import os; os._exit(0)")
+    assert runs.cared == [False]
+    assert outcome.readings == {"A": {"values": [1.0]}, "B": {"fault": "undefined"}}
+    assert (outcome.killers, outcome.note) == ({3: "ended the program"}, "")
+
+
+@pytest.mark.sandbox
 def test_what_never_ended_is_not_tried_again(walls, runs):
-    stubborn = "while True:\n    try:\n        while True: pass\n    except BaseException: pass"
-    outcome = runs(walls, "A = 1", stubborn, Limits(cell_seconds=1.0, notebook_seconds=30.0))
+    deaf = "import signal; signal.signal(signal.SIGALRM, signal.SIG_IGN)\nwhile True: pass"
+    outcome = runs(walls, "A = 1", deaf, Limits(cell_seconds=1.0, notebook_seconds=30.0))
     assert (runs.cared, runs.hung) == ([False, True], [None, 3])
     assert outcome.readings == {"A": {"values": [1.0]}, "B": {"fault": "undefined"}}
     assert (outcome.killers, outcome.note) == ({3: "never ended"}, "")

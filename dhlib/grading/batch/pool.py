@@ -122,7 +122,7 @@ class Pool:
 
     def _ready(self, busy: list[_Worker]) -> list[_Worker]:
         """Workers that answered, died, or take too long."""
-        patience = 2 * self._settings.limits.notebook_seconds + EXTRA_SECONDS  # it may run twice
+        patience = self._settings.limits.notebook_seconds + EXTRA_SECONDS
         while True:
             ready = wait([worker.connection for worker in busy], timeout=1.0)
             late = [worker for worker in busy if time.monotonic() - worker.since > patience]

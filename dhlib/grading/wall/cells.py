@@ -6,11 +6,13 @@ Two kinds of process, both in namespaces of their own:
   long, and tells the controller. Nothing in its namespaces can signal or trace it.
 * a *state* holds the variables of the notebook.
 
-Nearly all notebooks run to their end, and a fork of a process of this size costs more than most cells. So a notebook
-runs *swiftly* first: one state runs every cell. Should it die, hang, or be left in no condition for the next cell, the
-keeper says "again", and the controller has the notebook run once more, in new walls and with *care*: to run a cell the
-state forks, and waits: the child runs the cell. If the child dies, the state goes on without that cell; otherwise the
-child is the new state, and the keeper ends the old one.
+With *care*, a state forks to run a cell, and waits: the child runs the cell. If the child dies, the state goes on
+without that cell; otherwise the child is the new state, and the keeper ends the old one.
+
+But nearly all notebooks run to their end, and a fork of a process of this size costs more than most cells. So for its
+first moments a notebook runs *swiftly*: one state runs the cells by itself. Should it die, hang, or be left in no
+condition for the next cell, the keeper says "again", and the controller has the notebook run once more, in new walls
+and with care from the beginning. Those moments and that cell are all the time that is lost by it.
 
 Either way an answer is read in a child that ends afterwards, so that reading changes nothing; only for plain data,
 where reading is none of the student's business, a swift state saves the fork.
@@ -39,6 +41,8 @@ from dhlib.grading.wall.shell import read_part, reads_plainly, run_cell
 
 #: How long a cell may take beyond its time to stop by itself, and a state to say that a cell has ended.
 GRACE = 0.5
+#: How long a notebook runs before it is worth a fork to keep what it has.
+SWIFT_SECONDS = 2.0
 #: How long the state before a cell may take to hear that the cell was killed: a machine full of its processes is slow.
 KILL_SECONDS = 3.0
 ENDED = "the program of the notebook ended"
@@ -57,12 +61,12 @@ class Lost(Exception):
     """The notebook cannot go on."""
 
 
-class Hung(Lost):
-    """It cannot, since a cell has not ended in its time."""
+class Again(Exception):
+    """The notebook should run once more, with care; `hung` is the cell that did not end in its time, or None."""
 
-    def __init__(self, cell: int) -> None:
-        super().__init__("a cell never ends")
-        self.cell = cell
+    def __init__(self, hung: int | None = None) -> None:
+        super().__init__()
+        self.hung = hung
 
 
 def channel() -> tuple[socket.socket, socket.socket]:
@@ -81,7 +85,8 @@ class Keeper:
     job : dict
         ``{"cells": [{"source", "role", "part"}, …], "requests": {part: request}}``.
     limits : dict
-        With ``cell_seconds``, whether to run with ``care``, and which cell ``hung`` before: it is not tried again.
+        With ``cell_seconds``, whether to run with ``care`` from the beginning, and which cell ``hung`` before: it is
+        not tried again.
     shell
         Pristine; only states use it.
     answers : int
@@ -111,9 +116,13 @@ class Keeper:
             self.socket.close()
             for fd in self.own:
                 os.close(fd)
-            live(theirs, cells, self.shell, self.answers, self.seconds, self.care)
+            live(theirs, cells, self.shell, self.answers, self.seconds)
         theirs.close()
-        step = self._step if self.care else self._stride
+        swift_until = 0.0 if self.care else time.monotonic() + SWIFT_SECONDS
+
+        def step(run: list[int], request: Any) -> bool:
+            return (self._stride if time.monotonic() < swift_until else self._step)(run, request)
+
         try:
             ours: list[int] = []  # cells of the exercise that wait to run with the next one
             for k, cell in enumerate(cells):
@@ -126,29 +135,29 @@ class Keeper:
                     step([k], requests.get(cell["part"], {}))
                 elif step([*ours, k], None):
                     ours = []
+        except Again as again:
+            self._notice(again=True, hung=again.hung)
         except Lost as lost:
-            if self.care:
-                self._notice(lost=str(lost))
-            else:
-                self._notice(again=True, hung=lost.cell if isinstance(lost, Hung) else None)
+            self._notice(lost=str(lost))
         except Exception as error:  # whatever a notebook made of it, it costs that notebook and not the class
             self._notice(lost=f"its keeper met {error!r}"[:LONGEST_REPORT])
         else:
             self._notice(done=True)
 
     def _stride(self, run: list[int], request: Any) -> bool:
-        """Have the one state run cells, or read an answer; anything else than its success is a loss."""
-        self._send({"run": run, "request": request})
+        """Have the state itself run cells, or read an answer; anything else than success asks for care."""
         success = ["done" if request is None else "read", run[-1]]
-        deadline = time.monotonic() + self.seconds + GRACE
-        while True:
-            pid, said = self._hear(deadline)
-            if pid == self.state and said == success:
-                return True
-            if pid == 0:
-                raise Hung(run[-1])
-            if pid == self.state:
-                raise Lost("a cell needs care")
+        try:
+            self._send({"run": run, "request": request, "care": False})
+            deadline = time.monotonic() + self.seconds + GRACE
+            while True:
+                pid, said = self._hear(deadline)
+                if pid == self.state and said == success:
+                    return True
+                if pid in (0, self.state):
+                    raise Again(run[-1] if pid == 0 else None)
+        except Lost:
+            raise Again from None
 
     def _step(self, run: list[int], request: Any) -> bool:
         """Run cells from the state, or read an answer; whether there is a new state, so that no cell was lost."""
@@ -156,7 +165,7 @@ class Keeper:
         if k == self.hung:
             self._notice(killed=k, how="time")
             return False
-        self._send({"run": run, "request": request})
+        self._send({"run": run, "request": request, "care": True})
         deadline = time.monotonic() + self.seconds + GRACE
         runner = 0
         while True:
@@ -251,9 +260,7 @@ class Keeper:
         os.write(self.own[0], json.dumps(notice).encode() + b"\n")
 
 
-def live(
-    channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, answers: int, seconds: float, care: bool
-) -> None:
+def live(channel: socket.socket, cells: Sequence[dict[str, str]], shell: Any, answers: int, seconds: float) -> None:
     """A state: run the cells that the keeper names, with care each in a child that is the next state. Never returns."""
     # Names of its own for all it needs: a cell may put anything else in place of what modules hold.
     fork, wait, leave, own, group = os.fork, os.waitpid, os._exit, os.getpid, os.setpgid
@@ -285,7 +292,7 @@ def live(
                 leave(0)
             asked = load(command)
             k = asked["run"][-1]
-            part, request = cells[k]["part"], asked["request"]
+            part, request, care = cells[k]["part"], asked["request"], asked["care"]
             swift = not care and (request is None or reads_plainly(request, shell.user_ns.get(part)))
             if not swift:
                 if child := fork_soon():

@@ -21,7 +21,7 @@ class Limits:
     cell_seconds : float
         For each cell, and for reading each answer.
     notebook_seconds : float
-        For all of them together. A notebook in which a cell dies runs a second time, with care, and has it anew.
+        For all of them together.
     memory : int
         In bytes, beyond what Python with its libraries takes.
     processes : int

@@ -147,11 +147,7 @@ class Sandbox:
             else:
                 if not run.again or outcome.note:
                     return outcome
-                # Nothing is kept of a run in which a cell died; the one with care has all the time anew. Only where a
-                # cell never ended, it is not tried again, and its time is used up.
-                care, hung, deadline = True, run.hung, time.monotonic() + limits.notebook_seconds
-                if hung is not None:
-                    deadline -= limits.cell_seconds
+                care, hung = True, run.hung  # nothing is kept of a swift run in which a cell died
 
     def close(self) -> None:
         """End the box and all that runs in it; the next `run` would start one anew."""
@@ -259,7 +255,7 @@ class Box:
 
 
 class Run:
-    """One notebook in a box, swiftly or with care."""
+    """One notebook in a box, swiftly at first or with care throughout."""
 
     def __init__(self, box: Box, cells: Sequence[Cell], limits: Limits, care: bool, hung: int | None = None) -> None:
         self.box, self.cells, self.limits, self.care, self.hung = box, cells, limits, care, hung
