@@ -12,6 +12,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from notebooks import plain_sources
+from sampling import some
 
 IMPORT = ("from bookkit import glue_number, glue_figure, question", True)
 
@@ -83,7 +84,7 @@ def validate(folder: Path) -> subprocess.CompletedProcess[str]:
 @pytest.mark.book
 @pytest.mark.notebooks
 def test_notebooks_prove_their_own_outputs(site: Path, tmp_path: Path) -> None:
-    for path in (site / "notebooks").glob("*.ipynb"):
+    for path in some(sorted((site / "notebooks").glob("*.ipynb")), 7, "notebooks"):
         shutil.copy(path, tmp_path)
     done = validate(tmp_path)
     assert done.returncode == 0, done.stdout
