@@ -183,7 +183,7 @@ def test_whatever_a_keeper_meets_costs_its_notebook_and_not_the_class(monkeypatc
     monkeypatch.setattr(keeping.Keeper, "_step", meet)
     notices, own = os.pipe()
     job = {"cells": [{"source": "", "role": "answer", "part": "A"}], "requests": {}}
-    keeping.Keeper(job, {"cell_seconds": 1, "care": True, "hung": None}, None, 0, (own, 0)).run(keeping.channel())
+    keeping.Keeper(job, {"cell_seconds": 1, "swift": 0, "hung": None}, None, 0, (own, 0)).run(keeping.channel())
     os.close(own)
     with os.fdopen(notices) as heard:
         assert json.loads(heard.read()) == {"lost": "its keeper met RuntimeError('something new')"}

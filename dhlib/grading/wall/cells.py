@@ -41,8 +41,6 @@ from dhlib.grading.wall.shell import read_part, reads_plainly, run_cell
 
 #: How long a cell may take beyond its time to stop by itself, and a state to say that a cell has ended.
 GRACE = 0.5
-#: How long a notebook runs before it is worth a fork to keep what it has.
-SWIFT_SECONDS = 2.0
 #: How long the state before a cell may take to hear that the cell was killed: a machine full of its processes is slow.
 KILL_SECONDS = 3.0
 ENDED = "the program of the notebook ended"
@@ -85,8 +83,7 @@ class Keeper:
     job : dict
         ``{"cells": [{"source", "role", "part"}, …], "requests": {part: request}}``.
     limits : dict
-        With ``cell_seconds``, whether to run with ``care`` from the beginning, and which cell ``hung`` before: it is
-        not tried again.
+        With ``cell_seconds``, for how long it runs ``swift``, and which cell ``hung`` before: it is not tried again.
     shell
         Pristine; only states use it.
     answers : int
@@ -100,7 +97,7 @@ class Keeper:
     ) -> None:
         self.job, self.shell = job, shell
         self.seconds = float(limits["cell_seconds"])
-        self.care, self.hung = bool(limits["care"]), limits["hung"]
+        self.swift, self.hung = float(limits["swift"]), limits["hung"]
         self.answers, self.own = answers, own
         self.reports = 0
 
@@ -118,7 +115,7 @@ class Keeper:
                 os.close(fd)
             live(theirs, cells, self.shell, self.answers, self.seconds)
         theirs.close()
-        swift_until = 0.0 if self.care else time.monotonic() + SWIFT_SECONDS
+        swift_until = time.monotonic() + self.swift
 
         def step(run: list[int], request: Any) -> bool:
             return (self._stride if time.monotonic() < swift_until else self._step)(run, request)

@@ -36,6 +36,8 @@ START_SECONDS = 120.0
 #: How long a notebook is given to end after its time, and its box after it was told to end it.
 GRACE = 0.25
 END_SECONDS = 0.5
+#: How long a notebook runs before it is worth a fork to keep what it has.
+SWIFT_SECONDS = 2.0
 #: How often memory is watched where no control group does.
 WATCH_SECONDS = 0.2
 CHUNK = 1 << 16
@@ -279,7 +281,7 @@ class Run:
             self.box.jobs += 1
             limits = asdict(self.limits)
             limits |= {"others": self.box.others, "base": SERVER_MEMORY, "job": self.box.jobs}
-            limits |= {"care": self.care, "hung": self.hung}
+            limits |= {"swift": 0.0 if self.care else SWIFT_SECONDS, "hung": self.hung}
             try:
                 socket.send_fds(self.box.control, [json.dumps(limits).encode()], theirs)
             except OSError:
