@@ -3,7 +3,7 @@
 Docutils gives literature a role that WAI-ARIA has given up; the theme names its search button, and MyST-NB what it
 folds, by other words than those that can be read on them, so that nobody who speaks to the computer can choose them.
 Regions that scroll get a place in the order of Tab, by ``book/web/scrolling.js``; buttons that are pressed by keys keep
-the focus, by ``book/web/focus.js``.
+the focus, by ``book/web/focus.js``. Who reads in the dark sees no light page first, by ``book/web/theme.js``.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def leave_tabs_to_us(app: Sphinx, exception: Exception | None) -> None:
 
 def add_scripts(app: Sphinx, _config: Config) -> None:
     """Give every page its scripts."""
-    for name in ("scrolling.js", "focus.js"):
+    for name in ("theme.js", "scrolling.js", "focus.js"):
         app.add_js_file(None, body=(ROOT / "book" / "web" / name).read_text("utf-8"))
 
 
