@@ -1,6 +1,10 @@
 // What cells and live figures share: the state of each figure goes to Python with a cell, what Python shows comes back.
 
-const all = () => [...document.querySelectorAll("dh-link, dh-robot")].filter((figure) => figure.forCells);
+function all() {
+  const figures = [...document.querySelectorAll("dh-link, dh-robot")];
+  for (const figure of figures) figure.wake?.();
+  return figures.filter((figure) => figure.forCells);
+}
 const nameOf = ({ id }) => id.replace(/^live-/, "");
 
 /** The states of the page's figures, by their names. */

@@ -2,6 +2,7 @@
 
 import sheet from "./figures.css";
 import { make } from "./make.js";
+import { wake, whenNear } from "./near.js";
 import { html, number, spoken } from "./words.js";
 
 const still = matchMedia("(prefers-reduced-motion: reduce)");
@@ -9,6 +10,19 @@ const still = matchMedia("(prefers-reduced-motion: reduce)");
 export class LiveFigure extends HTMLElement {
   connectedCallback() {
     if (this.shadowRoot) return;
+    addEventListener("hashchange", () => this.#readAddress());
+    // What the page opens with may be on the screen already, where a picture that becomes a figure would move the text.
+    if (this.closest(".bd-article > section > section")) whenNear(this, () => this.#live());
+    else this.#live();
+    this.#readAddress();
+  }
+
+  /** Be alive now, near or not: what asks for the state of a figure cannot wait. */
+  wake() {
+    wake(this);
+  }
+
+  #live() {
     const style = document.createElement("style");
     style.textContent = sheet;
     this.live = make("div", { class: "live" });
@@ -16,8 +30,6 @@ export class LiveFigure extends HTMLElement {
     // What was put into the page at build, a still picture, is shown in print and where the figure cannot live.
     this.attachShadow({ mode: "open" }).append(style, this.live, this.status, make("slot"));
     this.build();
-    this.#readAddress();
-    addEventListener("hashchange", () => this.#readAddress());
   }
 
   /** A sentence of the state, spoken once the reader's hand rests. */
@@ -66,6 +78,7 @@ export class LiveFigure extends HTMLElement {
   #readAddress() {
     const [id, values] = location.hash.slice(1).split("?");
     if (!this.id || id !== this.id || values === undefined) return;
+    this.wake();
     this.read(new URLSearchParams(values));
     this.scrollIntoView({ block: "nearest" });
   }

@@ -1,6 +1,7 @@
 // Questions at the end of a chapter: read what was entered, open what was foreseen for it, and say so.
 
 import { NoNumber, read } from "./entries.js";
+import { whenNear } from "./near.js";
 import { foreseen } from "./sealing.js";
 
 const NOT_YET = "Not yet.";
@@ -64,22 +65,8 @@ function fill(form) {
   }
 }
 
-const forms = document.querySelectorAll("form.dh-question");
-
-// Fields come when the reader comes near, does anything at all, or leaves the page in peace for a while: of fields that
-// are there from the start the browser asks whether they are seen, and so has the whole chapter laid out.
-const near = new IntersectionObserver((entries) => {
-  for (const { target } of entries.filter(({ isIntersecting }) => isIntersecting)) fill(target);
-}, { rootMargin: "1000px" });
-const fillAll = () => {
-  near.disconnect();
-  forms.forEach(fill);
-};
-for (const sign of ["keydown", "pointerdown", "focusin"]) addEventListener(sign, fillAll, { capture: true, once: true });
-addEventListener("load", () => setTimeout(() => (globalThis.requestIdleCallback ?? setTimeout)(fillAll), PEACE));
-
-for (const form of forms) {
-  near.observe(form);
+for (const form of document.querySelectorAll("form.dh-question")) {
+  whenNear(form, () => fill(form));
   const sealed = JSON.parse(form.querySelector("script").textContent);
   form.addEventListener("submit", (event) => {
     event.preventDefault();

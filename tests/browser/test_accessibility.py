@@ -49,8 +49,8 @@ def open_page(browser: Any, address: str, width: int) -> Any:
     page.add_style_tag(content=STILL)
     page.add_script_tag(path=str(AXE))
     page.evaluate(OPEN_FOLDS)
-    # A section is laid out when a reader comes near (sections.js); here all of them are come to at once.
-    page.evaluate("document.documentElement.classList.add('whole'); scrollTo(0, document.body.scrollHeight)")
+    # Sections and figures wait for a reader (sections.js, near.js); who goes to a place in the page has all of them.
+    page.evaluate("dispatchEvent(new HashChangeEvent('hashchange')); scrollTo(0, document.body.scrollHeight)")
     page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     return page
 

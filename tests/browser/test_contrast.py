@@ -63,6 +63,7 @@ def open_chapter(page: Any, address: str, chapter: str, theme: str) -> None:
     page.add_style_tag(content=STILL)
     page.add_script_tag(path=str(Path(__file__).with_name("contrast.js")))
     page.evaluate("theme => { document.documentElement.dataset.theme = theme; }", theme)
+    page.evaluate("dispatchEvent(new HashChangeEvent('hashchange'))")  # and so every figure is alive (near.js)
     page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
