@@ -83,7 +83,7 @@ def test_what_is_drawn_stands_out(page: Any, address: str, chapter: str, theme: 
     open_chapter(page, address, chapter, theme)
     pieces = page.evaluate(MEASURE)
     assert sum(piece["letters"] for piece in pieces) > 5
-    assert sum(not piece["letters"] for piece in pieces) > 20
+    assert sum(not piece["letters"] for piece in pieces) > 10
     assert pale(pieces) == {}
 
 

@@ -131,6 +131,7 @@ def test_keys_open_a_fold_answer_a_question_and_change_the_theme(page: Any, addr
     page.keyboard.press("Enter")
     assert page.evaluate("document.querySelector('article details').open") != was
 
+    page.keyboard.press("Tab")  # who goes on by Tab finds every field in its place (near.js)
     form = page.locator("form.dh-question", has=page.locator("input[type=text]")).first
     for entry in form.locator("input[type=text]").all():
         entry.focus()

@@ -51,6 +51,22 @@ def page(browser: Any, site: Path, address: str) -> Iterator[Any]:
     context.close()
 
 
+#: A part that is answered wrongly.
+WRONG = "factor"
+
+
+@pytest.fixture(scope="module")
+def said(page: Any) -> dict[str, dict[str, str]]:
+    """What the page says of its answers, by part: one is wrong, the next to last breaks, the last is open."""
+    worked = answers()
+    right = [part for part in worked if part != WRONG]
+    worked[right[-2]] = "1 / 0"
+    page.evaluate(PUT, [WRONG, f"{WRONG} = 'no answer'"])
+    for part in right[:-1]:
+        page.evaluate(PUT, [part, worked[part]])
+    return {part: page.evaluate(CHECK, part) for part in worked}
+
+
 def saved(page: Any, folder: Path) -> Path:
     """Save the page as a notebook; returns where."""
     with page.expect_download() as waited:
@@ -60,30 +76,27 @@ def saved(page: Any, folder: Path) -> Path:
     return path
 
 
-def test_the_page_says_and_gives_what_the_graders_say_and_give(page: Any, tmp_path: Path) -> None:
-    """Right, wrong and open answers; saved as a notebook, they earn the same."""
-    worked = answers()
-    wrong = "factor"
-    right = [part for part in worked if part != wrong]
-    worked[right[-2]] = "1 / 0"
-    page.evaluate(PUT, [wrong, f"{wrong} = 'no answer'"])
-    for part in right[:-1]:
-        page.evaluate(PUT, [part, worked[part]])
-    said = {part: page.evaluate(CHECK, part) for part in worked}
+def test_the_page_says_and_gives_what_the_graders_say_and_give(
+    page: Any, address: str, said: dict[str, dict[str, str]], tmp_path: Path
+) -> None:
+    """Saved as a notebook, the answers earn the same."""
+    page.goto(f"{address}/exercises/{NAME}.html")
     graded = {mark.part: mark for mark in grade_notebook(saved(page, tmp_path)).marks}
     assert set(said) == set(graded)
     for part, mark in graded.items():
         assert said[part]["says"].startswith(str(mark)), part
         assert said[part]["state"] == ("good" if mark.passed else "bad"), part
         assert said[part]["points"].split(" of ")[0] == f"{mark.points:g}", part
-    assert not graded[wrong].passed
+    right = [part for part in graded if part != WRONG]
+    assert not graded[WRONG].passed
     assert not graded[right[-1]].passed
     assert "ZeroDivisionError" in said[right[-2]]["says"]
     assert all(graded[part].passed for part in right[:-2])
 
 
+@pytest.mark.usefixtures("said")
 def test_points_are_kept_and_shown(page: Any, address: str) -> None:
-    page.reload()
+    page.goto(f"{address}/exercises/{NAME}.html")
     total = page.locator(".dh-all").inner_text()
     assert " of " in total
     assert not total.startswith("0 of ")
@@ -95,6 +108,7 @@ def test_points_are_kept_and_shown(page: Any, address: str) -> None:
     other.close()
 
 
+@pytest.mark.usefixtures("said")
 def test_progress_goes_to_another_browser_as_a_file(browser: Any, page: Any, address: str, tmp_path: Path) -> None:
     page.goto(f"{address}/book/progress.html")
     with page.expect_download() as waited:

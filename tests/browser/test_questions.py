@@ -102,7 +102,7 @@ def test_fields_come_when_they_are_near_or_the_reader_does_anything(browser: Any
     page.locator("form.dh-question input").first.wait_for()
     assert 0 < page.evaluate(left) < every
     page.keyboard.press("Shift")
-    assert page.evaluate(left) == 0
+    page.wait_for_function(f"{left} === 0")
     assert page.evaluate("document.querySelectorAll('form.dh-question input').length") == every
     page.close()
 
