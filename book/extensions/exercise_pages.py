@@ -13,13 +13,13 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from docutils import nodes
 from formulas import ROOT
+from keeping import Keeper
 from sphinx.errors import ExtensionError
 
 from dhlib.errors import DHError
@@ -37,16 +37,28 @@ EXERCISES, SOLUTIONS = "exercises/", "solutions/"
 NOTEBOOKS, LIBRARY = "notebooks/exercises", "library"
 
 
-def library_wheel(source: Path, into: Path) -> Path | None:
-    """Build the wheel of the library of a folder; None where the folder holds pages alone."""
+#: What the wheel is made of, below the folder of the sources; pyproject.toml says so.
+OF_WHEEL = ("pyproject.toml", "README.md", "LICENSE", "pytest_dhlib.py", "dhlib/**/*", "exercises/*")
+
+
+def library_wheel(source: Path, keeper: Keeper) -> Path | None:
+    """Return the wheel of the library of a folder; None where the folder holds pages alone."""
     if not (source / "pyproject.toml").is_file():
         return None
+    files = sorted(path for pattern in OF_WHEEL for path in source.glob(pattern) if path.is_file())
+    files = [path for path in files if path.suffix != ".pyc"]
+    names = "\n".join(path.relative_to(source).as_posix() for path in files)
+    folder = keeper.made("wheel", lambda into: build_wheel(source, into), names, *files, Path(__file__))
+    (wheel,) = folder.glob("*.whl")
+    return wheel
+
+
+def build_wheel(source: Path, into: Path) -> None:
+    """Build the wheel of a folder."""
     command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(into)]
     done = subprocess.run(command, cwd=source, capture_output=True, text=True, check=False)
     if done.returncode:
         raise ExtensionError(f"the wheel of the library cannot be built: {done.stderr.strip()}")
-    (wheel,) = into.glob("*.whl")
-    return wheel
 
 
 def show_solution(app: Sphinx, docname: str, source: list[str]) -> None:
@@ -107,9 +119,7 @@ def offer(app: Sphinx, doctree: nodes.document) -> None:
 
 def prepare(app: Sphinx) -> None:
     """Build the wheel before the pages that name it."""
-    folder = tempfile.mkdtemp(prefix="dhlib-wheel-")
-    app.dh_wheel_folder = Path(folder)  # type: ignore[attr-defined]
-    app.dh_wheel = library_wheel(Path(app.srcdir), Path(folder))  # type: ignore[attr-defined]
+    app.dh_wheel = library_wheel(Path(app.srcdir), app.keeper)  # type: ignore[attr-defined]
 
 
 def serve(app: Sphinx, exception: Exception | None) -> None:
@@ -127,7 +137,6 @@ def serve(app: Sphinx, exception: Exception | None) -> None:
         if wheel:
             (site / LIBRARY).mkdir()
             shutil.copyfile(wheel, site / LIBRARY / wheel.name)
-    shutil.rmtree(getattr(app, "dh_wheel_folder", site / "none"), ignore_errors=True)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -7,6 +7,7 @@ sheet. The fonts alone do it. They are cut down to the icons that the pages and 
 from __future__ import annotations
 
 import re
+import shutil
 from logging import getLogger
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -68,7 +69,14 @@ def slim_icons(app: Sphinx, exception: Exception | None) -> None:
     sheets = "".join(path.read_text("utf-8") for path in static.rglob("*.css"))
     glyphs = {int(code, 16) if code else ord(letter) for code, letter in DRAWN.findall(sheets)}
     for font in (THEME / FONTS).glob("*.woff2"):
-        cut_font(font, glyphs, static / FONTS / font.name)
+        made = app.keeper.made(  # type: ignore[attr-defined]
+            "font",
+            lambda into, font=font: cut_font(font, glyphs, into / font.name),
+            font,
+            str(sorted(glyphs)),
+            Path(__file__),
+        )
+        shutil.copyfile(made / font.name, static / FONTS / font.name)
         (static / FONTS / font.with_suffix(".ttf").name).unlink(missing_ok=True)
     (static / "scripts" / "fontawesome.js").write_text(
         "// Icons come from a font: see book/extensions/icons.py.\n", "utf-8"

@@ -12,12 +12,14 @@ import html
 import json
 import posixpath
 import re
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from docutils import nodes
 from formulas import ROOT
 
+from dhlib import palette
 from dhlib.palette import LIGHT
 
 if TYPE_CHECKING:
@@ -82,6 +84,12 @@ def write_picture(path: Path, size: int, part: float) -> None:
         axes.add_patch(Polygon(arrow(*ends), color=LIGHT[name], linewidth=0))
     axes.add_patch(Circle(AXES["x"][0], 8, color=LIGHT["ink"], linewidth=0))
     figure.savefig(path, metadata={"Software": None})
+
+
+def write_pictures(folder: Path) -> None:
+    """Write the icon as PNG in all its sizes."""
+    for name, size, part in PICTURES:
+        write_picture(folder / name, size, part)
 
 
 def manifest(title: str, start: str) -> str:
@@ -164,8 +172,11 @@ def write_app(app: Sphinx, exception: Exception | None) -> None:
     site = Path(app.outdir)
     (site / "icons").mkdir(exist_ok=True)
     (site / ICON).write_text(icon_svg(), "utf-8")
-    for name, size, part in PICTURES:
-        write_picture(site / "icons" / name, size, part)
+    pictures = app.keeper.made(  # type: ignore[attr-defined]
+        "icons", write_pictures, Path(__file__), Path(palette.__file__)
+    )
+    for name, _size, _part in PICTURES:
+        shutil.copyfile(pictures / name, site / "icons" / name)
     start = app.builder.get_target_uri(app.config.root_doc)
     (site / MANIFEST).write_text(manifest(str(app.config.html_title or app.config.project), start), "utf-8")
     write_worker(site)

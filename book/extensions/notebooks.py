@@ -417,18 +417,23 @@ def write_notebooks(app: Sphinx, exception: Exception | None) -> None:
     if exception is not None or app.builder.name != "html":
         return
     executed = Path(app.outdir).parent / "jupyter_execute"
+    works = max(Path(app.srcdir, name).stat().st_mtime for name in app.config.bibtex_bibfiles)
     wanted = set()
     for page in sorted(page for page in app.env.found_docs if has_notebook(app, page)):
+        path = Path(app.outdir) / address_of(page)
+        wanted.add(path)
+        # Sphinx writes a page again whenever its text, or a number that it names, has changed.
+        if page not in app.written_pages and path.exists() and path.stat().st_mtime > works:  # type: ignore[attr-defined]
+            continue
         notebook = nbformat.read(executed / f"{page}.ipynb", as_version=4)
         try:
             plain = plain_notebook(notebook, Text(app.env, page, glued_values(executed / f"{page}.glue.json")))
         except (ValueError, KeyError) as fault:
             logger.warning("no notebook to download: %s", fault, location=page)
+            wanted.remove(path)
             continue
-        path = Path(app.outdir) / address_of(page)
         path.parent.mkdir(exist_ok=True)
         path.write_text(nbformat.writes(plain), "utf-8")
-        wanted.add(path)
     for old in set((Path(app.outdir) / "notebooks").glob("*.ipynb")) - wanted:
         old.unlink()
 

@@ -14,7 +14,9 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import needed_rules
 from formulas import ROOT
+from keeping import Keeper
 from needed_rules import pruned, vocabulary
 
 if TYPE_CHECKING:
@@ -74,6 +76,16 @@ def sheets_of(page: str, folder: Path, site: Path) -> tuple[Path, ...]:
     return tuple((folder / one[1]).resolve() for one in SHEET.finditer(head))
 
 
+def pruned_once(keeper: Keeper, sheet: str, words: set[str]) -> str:
+    """Return a style sheet without the rules that no page needs."""
+
+    def make(folder: Path) -> None:
+        (folder / "pruned.css").write_text(pruned(sheet, words), "utf-8")
+
+    parts = (sheet, " ".join(sorted(words)), Path(needed_rules.__file__))
+    return (keeper.made("sheet", make, *parts) / "pruned.css").read_text("utf-8")
+
+
 def quicken_pages(app: Sphinx, exception: Exception | None) -> None:
     """Join the style sheets of each page and defer its scripts."""
     if exception is not None or app.builder.name != "html":
@@ -90,7 +102,7 @@ def quicken_pages(app: Sphinx, exception: Exception | None) -> None:
         if not sheets or not all(sheet.is_file() for sheet in sheets):
             continue
         if sheets not in written:
-            text = pruned(joined(list(sheets), into), words)
+            text = pruned_once(app.keeper, joined(list(sheets), into), words)  # type: ignore[attr-defined]
             written[sheets] = f"page-{hashlib.sha256(text.encode()).hexdigest()[:10]}.css"
             (into / written[sheets]).write_text(text, "utf-8")
         address = posixpath.relpath((into / written[sheets]).as_posix(), path.parent.as_posix())
