@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import importlib
 import io
 import json
@@ -166,4 +167,5 @@ def start(send: Callable[[str], None], folder: str) -> Kernel:
     sys.path.insert(0, folder)
     kernel = Kernel(send)
     display.show = kernel.display
+    builtins.display = display.display  # type: ignore[attr-defined]  # a name that needs no import, as in any notebook
     return kernel

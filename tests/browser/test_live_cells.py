@@ -123,6 +123,13 @@ def test_values_are_written_as_a_notebook_writes_them(page: Any) -> None:
     assert "{'a', 'm', 'z'}" in built
 
 
+def test_display_needs_no_import_as_in_any_notebook(page: Any) -> None:
+    put(page, SUM, "display({'a': 1})\nshow = display\nshow('two')")
+    run(page, SUM)
+    assert fresh(page, SUM).inner_text().split("\n") == ["{'a': 1}", "'two'"]
+    reset(page, SUM)
+
+
 def test_what_was_built_stands_until_a_cell_runs_and_after_reset(page: Any) -> None:
     built = page.evaluate_handle(f"() => DhCells.cells[{SUM - 1}].built")
     assert built.evaluate("e => !e.hidden")
