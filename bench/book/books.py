@@ -54,8 +54,11 @@ def ours(name: str = "ours") -> Path:
     ignore = shutil.ignore_patterns("__pycache__", "node_modules")
     for name in ("dhlib", "book", "exercises", "solutions", "requirements", "bench"):
         shutil.copytree(ROOT / name, folder / name, ignore=ignore)
-    for name in ("_config.yml", "package-lock.json"):
-        shutil.copy(ROOT / name, folder)
+    shutil.copy(ROOT / "package-lock.json", folder)
+    config = yaml.safe_load((ROOT / "_config.yml").read_text("utf-8"))
+    # Links out of the chapters draw warnings here, after which our own builds start from the sources again.
+    config["sphinx"]["config"]["extensions"].remove("nothing_stale")
+    (folder / "_config.yml").write_text(yaml.safe_dump(config, allow_unicode=True), encoding="utf-8")
     for name in ("node_modules", ".tools"):
         (folder / name).symlink_to((ROOT / name).resolve())
     (folder / "_toc.yml").write_text(contents(), encoding="utf-8")
