@@ -51,7 +51,7 @@ def test_where_one_part_ends_counts():
 
 
 def test_what_broke_off_is_not_kept(tmp_path, work):
-    done, of = work
+    _, of = work
 
     def breaks(folder: Path) -> None:
         (folder / "made.txt").write_text("half", "utf-8")
