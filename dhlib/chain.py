@@ -513,7 +513,7 @@ class Chain:
                 joint,
                 float(joint.sign),
                 float(joint.offset),
-                quarter_turns(joint.theta),
+                quarter_turns(joint.theta) or None,
                 (float(joint.d) or None) if joint.kind == "R" else cos_sin(float(joint.theta)),
                 (*cos_sin(float(alpha)), float(a) or None),
             )

@@ -55,7 +55,7 @@ def has_symbols(values: Any) -> bool:
     if isinstance(values, np.ndarray):
         return values.dtype == object and any(is_symbolic(value) for value in values.flat)
     if isinstance(values, (list, tuple)):
-        return any(has_symbols(value) for value in values)
+        return any(type(value) is not float and has_symbols(value) for value in values)
     return False
 
 
@@ -152,12 +152,20 @@ def cos_sin(angle: Scalar) -> tuple[Scalar, Scalar]:
             sympy = sys.modules["sympy"]
             return sympy.cos(angle), sympy.sin(angle)
         if isinstance(angle, np.ndarray):
-            return without_rounding(np.cos(angle)), without_rounding(np.sin(angle))
+            return _cos_sin_of_array(angle)
     c, s = math.cos(angle), math.sin(angle)
     return (0.0 if -ROUNDING < c < ROUNDING else c, 0.0 if -ROUNDING < s < ROUNDING else s)
 
 
-def without_rounding(values: FloatArray) -> FloatArray:
+def _cos_sin_of_array(angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """From the tangent of half the angle: one function in place of two, and one that processors are quicker at."""
+    t = np.tan(0.5 * angle)
+    square = t * t
+    cosine, sine = (1 - square) / (1 + square), 2 * t / (1 + square)
+    return _without_rounding(cosine), _without_rounding(sine)
+
+
+def _without_rounding(values: FloatArray) -> FloatArray:
     """Set to 0, in place, what is only the rounding of a quarter turn in an array of cosines or sines."""
     values[np.abs(values) < ROUNDING] = 0.0
     return values

@@ -14,14 +14,16 @@ Then the screws are multiplied from the right, and nothing is ever expanded.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 import sympy
 
 from dhlib.chain import CHUNK, Chain
-from dhlib.scalars import FloatArray, exact, quarter_turns, without_rounding
+from dhlib.errors import DHError
+from dhlib.scalars import Scalar, cos_sin, exact, quarter_turns
 from dhlib.transforms import Pose
 
 Fused = tuple[sympy.Expr, list[sympy.Expr], sympy.Expr, sympy.Expr]
@@ -125,59 +127,61 @@ def _short_name(function: sympy.Expr) -> str:
 
 def compile_chain(chain: Chain) -> Callable[[Any], Pose]:
     """A function q → fk(q) from the symbolic form; see :meth:`Chain.compiled`."""
-    symbols = joint_symbols(chain)
-    # An offset of whole quarter turns is put into the formula, where it only swaps sines and cosines.
-    quarters = {
-        symbol: quarter_turns(float(joint.offset)) if joint.kind == "R" else None
-        for symbol, joint in zip(symbols, chain.joints, strict=True)
+    if chain.is_symbolic:
+        raise DHError("compiled() needs numbers; this chain holds symbols. Give them values first.")
+    symbols, kinds = joint_symbols(chain), chain.kinds
+    # The function takes cosine and sine of each angle, not the angle: then it knows sums and products only, and is the
+    # same for floats and for arrays.
+    turns = {
+        symbol: (sympy.Dummy(f"c{i}"), sympy.Dummy(f"s{i}"))
+        for i, (symbol, kind) in enumerate(zip(symbols, kinds, strict=True), 1)
+        if kind == "R"
     }
-    turned = {symbol: symbol + turns * sympy.pi / 2 for symbol, turns in quarters.items() if turns}
+    parameters = [name for symbol in symbols for name in turns.get(symbol, (symbol,))]
     entries = sympy.lambdify(
-        symbols,
-        list(fused_product(chain)[:3, :].subs(turned)),
-        modules=[{"cos": _cosine, "sin": _sine}, "numpy"],
-        cse=_in_steps,
+        parameters, list(fused_product(chain)[:3, :]), modules="math", cse=partial(_in_steps, turns)
     )
-    signs = np.array([joint.sign for joint in chain.joints], dtype=float)
-    offsets = np.array(
-        [0.0 if symbol in turned else float(joint.offset) for symbol, joint in zip(symbols, chain.joints, strict=True)]
-    )
+
+    def at(q: Any) -> list[Scalar]:
+        """The twelve entries, row by row, at n floats or n arrays."""
+        known: list[Scalar] = []
+        for kind, ((c, s, d), _) in zip(kinds, chain._screws(q), strict=True):
+            known += (c, s) if kind == "R" else (d,)
+        return entries(*known)  # type: ignore[no-any-return]
+
     base, tool = (np.asarray(end, dtype=float) for end in (chain._own_base, chain.tool))
-    identity = np.eye(4)
+    base_moves, tool_moves = (not np.array_equal(end, np.eye(4)) for end in (base, tool))
 
     def fk(q: Any) -> Pose:
         values = np.asarray(q, dtype=float)
-        rows = values.reshape(-1, chain.n)
-        poses = np.zeros((len(rows), 4, 4))
-        for start in range(0, len(rows), CHUNK):
-            piece = np.ascontiguousarray((rows[start : start + CHUNK] * signs + offsets).T)
-            out = poses[start : start + CHUNK]
-            for k, entry in enumerate(entries(*piece)):
-                out[:, k // 4, k % 4] = entry
-        poses[:, 3, 3] = 1.0
-        poses = poses.reshape(*values.shape[:-1], 4, 4)
-        if not np.array_equal(base, identity):
+        if values.ndim == 1:
+            poses = np.array([*at(values.tolist()), 0.0, 0.0, 0.0, 1.0]).reshape(4, 4)
+        else:
+            rows = values.reshape(-1, chain.n)
+            poses = np.zeros((len(rows), 4, 4))
+            for start in range(0, len(rows), CHUNK):
+                out = poses[start : start + CHUNK]
+                for k, entry in enumerate(at(np.ascontiguousarray(rows[start : start + CHUNK].T))):
+                    out[:, k // 4, k % 4] = entry
+            poses[:, 3, 3] = 1.0
+            poses = poses.reshape(*values.shape[:-1], 4, 4)
+        if base_moves:
             poses = base @ poses
-        if not np.array_equal(tool, identity):
+        if tool_moves:
             poses = poses @ tool
         return np.add(poses, 0.0, out=poses)  # turns -0.0 into 0.0
 
     return fk
 
 
-def _cosine(angle: FloatArray) -> FloatArray:
-    return without_rounding(np.cos(angle))
-
-
-def _sine(angle: FloatArray) -> FloatArray:
-    return without_rounding(np.sin(angle))
-
-
-def _in_steps(entries: list[sympy.Expr]) -> tuple[list[tuple[sympy.Symbol, sympy.Expr]], list[sympy.Expr]]:
+def _in_steps(
+    turns: Mapping[sympy.Symbol, tuple[sympy.Symbol, sympy.Symbol]], entries: list[sympy.Expr]
+) -> tuple[list[tuple[sympy.Symbol, sympy.Expr]], list[sympy.Expr]]:
     """What is computed first, and the entries in terms of it, as :func:`sympy.cse` gives them.
 
-    The cosine and the sine of a sum of angles come from those of its terms: that is cheaper than another cosine, and
-    where all terms are quarter turns it leaves 0 and ±1, which the cosine of a rounded sum does not.
+    `turns` names cosine and sine of each joint angle. Those of a sum of angles come from those of its terms: that is
+    cheaper than another cosine, and where all terms are quarter turns it leaves 0 and ±1, which the cosine of a rounded
+    sum does not.
     """
     steps: list[tuple[sympy.Symbol, sympy.Expr]] = []
     known: dict[sympy.Expr, tuple[sympy.Expr, sympy.Expr]] = {}
@@ -189,12 +193,16 @@ def _in_steps(entries: list[sympy.Expr]) -> tuple[list[tuple[sympy.Symbol, sympy
 
     def cosine_sine(terms: tuple[sympy.Expr, ...]) -> tuple[sympy.Expr, ...]:
         angle = sympy.Add(*terms)
+        if angle in turns:
+            return turns[angle]
+        if -angle in turns:  # a joint that counts the other way
+            cosine, sine = turns[-angle]
+            return cosine, -sine
+        if len(terms) == 1:
+            return tuple(exact(part) for part in cos_sin(float(angle)))
         if angle not in known:
-            if len(terms) == 1:
-                known[angle] = named(sympy.cos(angle), sympy.sin(angle))
-            else:
-                (c, s), (c_last, s_last) = cosine_sine(terms[:-1]), cosine_sine(terms[-1:])
-                known[angle] = named(c * c_last - s * s_last, s * c_last + c * s_last)
+            (c, s), (c_last, s_last) = cosine_sine(terms[:-1]), cosine_sine(terms[-1:])
+            known[angle] = named(c * c_last - s * s_last, s * c_last + c * s_last)
         return known[angle]
 
     of_angles = {}

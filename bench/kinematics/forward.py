@@ -41,6 +41,7 @@ def main() -> None:
             assert np.abs(contender.one(qs[7]) - expected[7]).max() < SAME
         q = qs[7].copy()
         one = side_by_side(lambda q=q: arm.fk(q), lambda c=contender, q=q: c.one(q), rounds=21)
+        swift = side_by_side(lambda q=q: compiled(q), lambda c=contender, q=q: c.one(q), rounds=21)
         pieces = {"our_pieces": MANY, "peer_pieces": len(theirs)}
         many = side_by_side(lambda: arm.fk(qs), lambda c=contender, t=theirs: c.many(t), **pieces)
         fast = side_by_side(lambda: compiled(qs), lambda c=contender, t=theirs: c.many(t), **pieces)
@@ -50,6 +51,7 @@ def main() -> None:
                 "call": contender.call,
                 "poses": len(theirs),
                 "one": one.as_dict(),
+                "compiled_one": swift.as_dict(),
                 "many": many.as_dict(),
                 "compiled": fast.as_dict(),
             }

@@ -13,6 +13,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -37,16 +38,24 @@ EXERCISES, SOLUTIONS = "exercises/", "solutions/"
 NOTEBOOKS, LIBRARY = "notebooks/exercises", "library"
 
 
-#: What the wheel is made of, below the folder of the sources; pyproject.toml says so.
-OF_WHEEL = ("pyproject.toml", "README.md", "LICENSE", "pytest_dhlib.py", "dhlib/**/*", "exercises/*")
+#: What goes into the wheel beside what pyproject.toml includes.
+BESIDES = ("pyproject.toml", "README.md", "LICENSE")
+
+
+def files_of_wheel(source: Path) -> list[Path]:
+    """Return the files that the wheel of a folder is made of."""
+    project = tomllib.loads((source / "pyproject.toml").read_text("utf-8"))
+    included = project["tool"]["hatch"]["build"]["targets"]["wheel"]["include"]
+    found = [path for pattern in (*BESIDES, *included) for path in source.glob(pattern.removeprefix("/"))]
+    files = {file for path in found for file in (path.rglob("*") if path.is_dir() else [path]) if file.is_file()}
+    return sorted(file for file in files if file.suffix != ".pyc")
 
 
 def library_wheel(source: Path, keeper: Keeper) -> Path | None:
     """Return the wheel of the library of a folder; None where the folder holds pages alone."""
     if not (source / "pyproject.toml").is_file():
         return None
-    files = sorted(path for pattern in OF_WHEEL for path in source.glob(pattern) if path.is_file())
-    files = [path for path in files if path.suffix != ".pyc"]
+    files = files_of_wheel(source)
     names = "\n".join(path.relative_to(source).as_posix() for path in files)
     folder = keeper.made("wheel", lambda into: build_wheel(source, into), names, *files, Path(__file__))
     (wheel,) = folder.glob("*.whl")

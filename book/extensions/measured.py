@@ -9,6 +9,7 @@ heading above it.
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,6 +26,10 @@ import report
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
+
+
+#: Between a number and its unit.
+UNIT = re.compile(r"(?<=\d) (?=[^\W\d]|[×%/])")
 
 
 class NotMeasured(nodes.Invisible, nodes.Element):  # type: ignore[misc]
@@ -59,7 +64,8 @@ class MeasuredDirective(SphinxDirective):
         if table.bars:
             svg = inline_svg(charts.chart(table), charts.words(table), identity)
             section += nodes.raw("", f'<figure class="dh-measured">{svg}</figure>', format="html")
-        self._parse(report.markdown(table), section)
+        # On a phone the columns are narrow: a time breaks between numbers, not before its unit.
+        self._parse((UNIT.sub("\N{NO-BREAK SPACE}", row) for row in report.markdown(table)), section)
         self._parse([f"- {line}" for line in report.sentences(table)], section)
         self._parse([f"*{where}*"], section)
         return section

@@ -28,16 +28,16 @@ function wakeOneByOne() {
   idle(wakeOneByOne);
 }
 
+const allIsLaidOut = () => document.documentElement.classList.contains("whole");
+
 /** Act once, when a reader comes near an element. */
 export function whenNear(element, act) {
   waiting.set(element, act);
-  // The class says that all of the page is laid out anyway (sections.js).
-  if (document.documentElement.classList.contains("whole")) wake(element);
+  if (allIsLaidOut()) wake(element);
   else watch.observe(element);
 }
 
-addEventListener("keydown", ({ key }) => { if (key === "Tab") wakeAll(); }, true);
-addEventListener("click", ({ target }) => { if (target.closest?.('a[href*="#"]')) wakeAll(); }, true);
-for (const name of ["hashchange", "popstate"]) addEventListener(name, wakeAll);
+// All is laid out from when a reader goes on by Tab or to a place in the page (scrolling.js, sections.js).
+new MutationObserver(() => { if (allIsLaidOut()) wakeAll(); }).observe(document.documentElement, { attributeFilter: ["class"] });
 for (const sign of ["keydown", "pointerdown", "focusin"]) addEventListener(sign, () => idle(wakeOneByOne), { capture: true, once: true });
 addEventListener("load", () => setTimeout(() => idle(wakeOneByOne), PEACE));

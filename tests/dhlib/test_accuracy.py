@@ -43,9 +43,9 @@ def test_fifty_digits(name):
     chain = EVERY_ROBOT[name]
     rng = np.random.default_rng(7)
     several = rng.uniform(-np.pi, np.pi, (40, chain.n))
-    batch, compiled = chain.fk(several), chain.compiled()(several)
-    for q, computed, fast in zip(several, batch, compiled, strict=True):
-        for result in (computed, chain.fk(q), fast):
+    compiled = chain.compiled()
+    for q, computed, fast in zip(several, chain.fk(several), compiled(several), strict=True):
+        for result in (computed, chain.fk(q), fast, compiled(q)):
             rotation, position = worst(chain, q, result)
             assert rotation <= 2e-15
             assert position <= 2e-15
@@ -63,7 +63,9 @@ def test_quarter_turns_leave_no_crumbs(name):
     """At quarter turns every rotation entry is 0 or ±1, and no position is a rounding of 0."""
     chain = EVERY_ROBOT[name]
     q = np.random.default_rng(3).integers(-4, 5, (200, chain.n)) * (np.pi / 2)
-    for poses in (chain.fk(q), chain.frames(q), np.array([chain.fk(row) for row in q]), chain.compiled()(q)):
+    compiled = chain.compiled()
+    one_by_one = (np.array([fk(row) for row in q]) for fk in (chain.fk, compiled))
+    for poses in (chain.fk(q), chain.frames(q), compiled(q), *one_by_one):
         assert np.all(np.isin(poses[..., :3, :3], [-1, 0, 1]))
         positions = np.abs(poses[..., :3, 3])
         assert not np.any((positions > 0) & (positions < 1e-12))

@@ -4,7 +4,7 @@ import sympy
 from arms import EVERY_ROBOT, random_chain
 from numpy.testing import assert_allclose
 
-from dhlib import Chain, Prismatic, Revolute, robots
+from dhlib import Chain, DHError, Prismatic, Revolute, robots
 from dhlib.symbolic import joint_symbols
 
 CHAINS = {
@@ -84,6 +84,11 @@ def test_the_offset_is_in_theta():
     arm = Chain([Revolute(a=1, offset=np.pi / 2, sign=-1)], "classic")
     assert arm.symbolic()[0, 3] == sympy.cos(sympy.Symbol("theta1"))
     assert_allclose(arm.compiled()([0.0])[:3, 3], [0, 1, 0], atol=1e-15)
+
+
+def test_a_chain_with_symbols_is_not_compiled():
+    with pytest.raises(DHError, match="needs numbers"):
+        Chain([Revolute(a=sympy.Symbol("a1"))], "classic").compiled()
 
 
 def test_half_angles_are_exact_too():

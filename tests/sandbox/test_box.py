@@ -50,6 +50,49 @@ def test_nothing_is_left_when_a_sandbox_is_closed():
     assert not any(folder.exists() for folder in folders)
 
 
+#: Whether a library was there before the cell came, and whether it works.
+THERE = {
+    "sympy": "import sys\nA = 2.0 * ('sympy' in sys.modules)\nimport {spelt}\nA = A + float({spelt}.sqrt(1))",
+    "matplotlib": "import sys\nA = 2.0 * ('matplotlib.pyplot' in sys.modules)\n"
+    "plt = __import__('{spelt}.pyplot').pyplot\nplt.plot([0, 1]); A = A + len(plt.gcf().axes)",
+}
+
+
+@pytest.mark.sandbox
+@pytest.mark.parametrize("name", THERE)
+def test_a_box_imports_what_a_notebook_needs_before_its_time_begins(name):
+    with Sandbox() as sandbox_:
+        asked = "import sys; A = len({'sym' + 'py', 'mat' + 'plotlib'} & {*sys.modules})"  # which does not name them
+        assert value(sandbox_.run(cells(asked), REQUESTS)) == [0.0]
+        assert sandbox_._box.warmed == set()
+        assert value(sandbox_.run(cells(THERE[name].format(spelt=name)), REQUESTS)) == [3.0]
+        assert sandbox_._box.warmed == {name}
+        assert value(sandbox_.run(cells(asked), REQUESTS)) == [1.0]  # and keeps it
+
+
+@pytest.mark.sandbox
+def test_what_is_needed_in_other_words_is_imported_within_the_time(walls):
+    hidden = "A = float(__import__('sym' + 'py').sqrt(4)) + __import__('mat' + 'plotlib').cm.viridis(0.0)[3]"
+    assert value(walls.run(cells(hidden), REQUESTS)) == [3.0]
+
+
+@pytest.mark.sandbox
+def test_a_box_that_ends_while_it_imports_starts_anew(monkeypatch):
+    """Killed from without, once: the notebook is run in another box."""
+    warm, killed = sandbox.Box.warm, []
+
+    def warm_and_kill(box, libraries):
+        if not killed:
+            killed.append(box)
+            os.kill(descendants(box.process.pid)[1], signal.SIGKILL)
+        warm(box, libraries)
+
+    monkeypatch.setattr(sandbox.Box, "warm", warm_and_kill)
+    with Sandbox() as sandbox_:
+        assert value(sandbox_.run(cells("import sympy\nA = sympy.Integer(1)"), REQUESTS)) == [1.0]
+        assert sandbox_._box not in killed
+
+
 GREEDY = {
     "children": "import os, time\nfor _ in range(8):\n    if os.fork() == 0:\n"
     "        kept = bytearray(b'x' * 120_000_000); time.sleep(60); os._exit(0)\ntime.sleep(60)",

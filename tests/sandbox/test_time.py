@@ -91,6 +91,9 @@ def test_a_notebook_that_breaks_its_box_has_no_second_time(monkeypatch):
         def __init__(self, *_):
             started.append(now[0])
 
+        def warm(self, libraries):
+            pass
+
         def close(self):
             pass
 

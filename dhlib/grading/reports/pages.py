@@ -26,6 +26,8 @@ from dhlib.scene import Sketch
 LONGEST = 90
 
 _STYLE = re.compile(r"<style>(.*?)</style>", re.DOTALL)
+#: z_1, a_{i-1}: one letter and its index, and no part of a longer name.
+_SYMBOL = re.compile(r"(?<![\w&#])([A-Za-zα-ω])_(?:\{([^{}]*)\}|(\w))(?!\w)")
 
 
 def render(template: str, drawings_style: str = "", **values: Any) -> str:
@@ -38,7 +40,7 @@ def render(template: str, drawings_style: str = "", **values: Any) -> str:
     drawings_style : str
         The style sheet of the drawings in it.
     values
-        What it is filled with; only `Markup` is taken as it is, and only our own drawings are that.
+        What it is filled with; only `Markup` is taken as it is: our drawings, and sentences that `lettered` escaped.
     """
     style = f"{_sheet()}{drawings_style}"
     return str(_environment().get_template(template).render(style=Markup(style), policy=policy(style), **values))
@@ -82,6 +84,22 @@ def brief(reading: Any) -> str:
     return words if len(words) <= LONGEST else f"{words[:LONGEST]}…"
 
 
+def lettered(text: str) -> Markup:
+    """A sentence with its symbols as they are printed.
+
+    Examples
+    --------
+    >>> lettered("z_1 is reversed, a_{i-1} < 0, my_1st is none")
+    Markup('<i>z</i><sub>1</sub> is reversed, <i>a</i><sub>i−1</sub> &lt; 0, my_1st is none')
+    """
+
+    def symbol(found: re.Match[str]) -> str:
+        index = (found[2] or found[3]).replace("-", "−")
+        return f"<i>{found[1]}</i><sub>{index}</sub>"
+
+    return Markup(_SYMBOL.sub(symbol, str(Markup.escape(text))))
+
+
 def _leaves(value: Any) -> Iterator[str]:
     if isinstance(value, list):
         for item in value:
@@ -103,7 +121,7 @@ def _environment() -> Any:
         lstrip_blocks=True,
         undefined=StrictUndefined,
     )
-    pages.filters |= {"number": number, "brief": brief, "begun": begun}
+    pages.filters |= {"number": number, "brief": brief, "begun": begun, "lettered": lettered}
     return pages
 
 

@@ -7,6 +7,7 @@ import contextlib
 import json
 import math
 import os
+import re
 import select
 import shutil
 import signal
@@ -41,6 +42,12 @@ SWIFT_SECONDS = 2.0
 #: How often memory is watched where no control group does.
 WATCH_SECONDS = 0.2
 CHUNK = 1 << 16
+#: What stands in a notebook, or in what is asked of it, that needs such a library. A box imports it outside the time
+#: of any notebook; where one needs it in other words, it imports it within its own.
+NEEDS = {
+    "sympy": re.compile(rb"sympy|symb|compiled|formula|from_table"),
+    "matplotlib": re.compile(rb"matplotlib|pylab|plt|plot"),
+}
 #: More than this is no notebook.
 LARGEST_JOB = 12_000_000
 
@@ -128,16 +135,18 @@ class Sandbox:
         data = json.dumps(job).encode()
         if len(data) > LARGEST_JOB:
             return Outcome(note="The code of the notebook is too long to be run.")
+        needs = {name for name, words in NEEDS.items() if words.search(data)}
         care, hung, broken = False, None, False
         deadline = time.monotonic() + limits.notebook_seconds
         while True:
+            started = time.monotonic()
             if self._box is None:
-                started = time.monotonic()
                 self._box = Box(self._outer, self._filter, self.limits)
-                deadline += time.monotonic() - started
             run = Run(self._box, cells, limits, care, hung)
             outcome = run.outcome
             try:
+                self._box.warm(needs)
+                deadline += time.monotonic() - started  # the time is the notebook's
                 run.run(data, deadline)
             except Crashed:
                 self.close()
@@ -173,6 +182,7 @@ class Box:
         self.group = ControlGroup(limits)
         self.control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.jobs = 0
+        self.warmed: set[str] = set()
         self.others = processes_that_count()
         said = tempfile.TemporaryFile()  # noqa: SIM115
         self.process = subprocess.Popen(
@@ -202,6 +212,19 @@ class Box:
         said.close()
         self.control.settimeout(None)
         self.group.holds(self.process.pid)
+
+    def warm(self, libraries: set[str]) -> None:
+        """Have it import libraries, unless it has; raises Crashed if it ends over that."""
+        for name in sorted(libraries - self.warmed):
+            self.control.settimeout(START_SECONDS)
+            try:
+                self.control.send(json.dumps({"warm": name}).encode())
+                if not self.control.recv(LONGEST_MESSAGE):
+                    raise Crashed
+            except OSError:
+                raise Crashed from None
+            self.control.settimeout(None)
+            self.warmed.add(name)
 
     @property
     def watched(self) -> bool:

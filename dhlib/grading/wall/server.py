@@ -1,4 +1,4 @@
-"""Inside the outer wall: a process with everything imported, that forks for each submission.
+"""Inside the outer wall: a process that has imported what notebooks use, and forks for each submission.
 
 Started as the only program behind the outer wall. It reads nothing of any submission: the files through which a job
 comes and answers go are handed on to the child unread, so that no memory of it holds what one student wrote when the
@@ -27,6 +27,7 @@ from dhlib.grading.wall.shell import make_shell
 
 LONGEST_MESSAGE = 1 << 18
 FILES = 3
+READY = json.dumps({"ready": True}).encode()
 #: The order to end a job, before its number.
 END = b"end "
 #: More than a server ever has open.
@@ -35,34 +36,47 @@ LARGEST_JOB = 16_000_000
 
 
 def preload() -> Any:
-    """Import what notebooks use and do each thing once, so that no submission pays for it; return a shell."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
+    """Import what every notebook uses and do each thing once, so that no submission pays for it; return a shell."""
     import numpy as np
-    import sympy
 
     import dhlib.grading.answers
-    import dhlib.plot
     import dhlib.robots  # noqa: F401
 
     shell = make_shell()
-    shell.run_cell("%matplotlib inline\n1 + 1", store_history=False)
+    shell.run_cell("1 + 1", store_history=False)
+    np.linalg.inv(np.eye(4) + 0.1)
+    shell.reset(new_session=True)
+    return shell
+
+
+def _warm_sympy(_shell: Any) -> None:
+    import numpy as np
+    import sympy
+
     t = sympy.symbols("theta_1")
     matrix = sympy.Matrix([[sympy.cos(t), -sympy.sin(t)], [sympy.sin(t), sympy.cos(t)]])
     sympy.lambdify([t], list(sympy.simplify(matrix * matrix.T)), modules="numpy", cse=True)(np.zeros(2))
     str(matrix.subs(t, sympy.pi / 2))
-    np.linalg.inv(np.eye(4) + 0.1)
+
+
+def _warm_matplotlib(shell: Any) -> None:
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+
+    import dhlib.plot  # noqa: F401
+
+    shell.run_cell("%matplotlib inline", store_history=False)
     figure = plt.figure()
     figure.gca().plot([0, 1], label="a")
     figure.gca().legend()
     figure.savefig(io.BytesIO(), format="png")
     plt.close("all")
-    shell.reset(new_session=True)
-    gc.collect()
-    gc.freeze()
-    return shell
+
+
+#: What takes long to import, and not every class uses: each is imported and used once when the first notebook needs it.
+WARM = {"sympy": _warm_sympy, "matplotlib": _warm_matplotlib}
 
 
 class Server:
@@ -74,16 +88,26 @@ class Server:
         self.filter = base64.b64decode(self.config["filter"])
         inner.become(self.config["user"])
         self.shell = preload()
+        self._settle()
 
     def serve(self) -> None:
         """Serve until the other side closes."""
-        self.control.send(json.dumps({"ready": True}).encode())
+        self.control.send(READY)
         while True:
             message, files, _, _ = socket.recv_fds(self.control, LONGEST_MESSAGE, FILES)
             if not message:
                 return
             if len(files) == FILES:
                 self._serve_one(json.loads(message), files)
+            else:
+                WARM[json.loads(message)["warm"]](self.shell)
+                self._settle()
+                self.control.send(READY)
+
+    def _settle(self) -> None:
+        """Leave to no child the work of collecting what is here."""
+        gc.collect()
+        gc.freeze()
 
     def _serve_one(self, limits: dict[str, Any], files: list[int]) -> None:
         alive, held = os.pipe()

@@ -72,7 +72,7 @@ def tags(page):
 HARMLESS = {
     *("html", "head", "meta", "title", "style", "body", "header", "footer", "section", "h1", "h2", "h3", "p", "span"),
     *("div", "ul", "ol", "li", "a", "table", "caption", "tr", "th", "td", "figure", "figcaption", "strong"),
-    *("svg", "desc", "g", "path", "circle", "text", "tspan"),
+    *("i", "sub", "svg", "desc", "g", "path", "circle", "text", "tspan"),
 }
 
 
