@@ -22,7 +22,7 @@ from formulas import ROOT, set_formula
 from myst_nb.core.variables import RetrievalError
 from myst_nb.ext.glue.utils import retrieve_glue_data
 from scripts import bundle
-from sealing import Keys, seal
+from sealing import Keys, lock, seal
 from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
@@ -67,6 +67,9 @@ class QuestionDirective(SphinxDirective):
         if node["question"]["kind"] == "choice":
             self.take_options(node)
         self.env.metadata[self.env.docname]["has_questions"] = True
+        # What it will be sealed with is derived while pages are read and written.
+        _, *of_keys = lock(node["question"], seed(self.env.docname, name))
+        self.env.app.keys.begin(*of_keys)  # type: ignore[attr-defined]
         return [node]
 
     def take_options(self, node: QuestionNode) -> None:
@@ -83,6 +86,11 @@ class QuestionDirective(SphinxDirective):
             for part in item.children:
                 option.extend(part.children if isinstance(part, nodes.paragraph) else [part])
             node.append(option)
+
+
+def seed(page: str, name: str) -> str:
+    """Return what a question is sealed by: the same each time."""
+    return f"{page} {name}"
 
 
 def feedback(translator: HTML5Translator, source: str, node: nodes.Element) -> str:
@@ -128,7 +136,7 @@ def depart_question(translator: HTML5Translator, node: QuestionNode) -> None:
     page = translator.builder.current_docname
     answers = [answer | {"says": feedback(translator, answer["says"], node)} for answer in question["answers"]]
     keys: Keys = translator.builder.app.keys  # type: ignore[attr-defined]
-    sealed = seal(question | {"answers": answers}, f"{page} {node['name']}", keys)
+    sealed = seal(question | {"answers": answers}, seed(page, node["name"]), keys)
     translator.body.append(entries(translator, question, node) if question["kind"] == "number" else "")
     # Formulas within what is sealed need their glyphs: the page is told which, together with all that it uses.
     glyphs = " ".join(sorted(set(re.findall(r'href="#glyph-[^"]+"', "".join(answer["says"] for answer in answers)))))

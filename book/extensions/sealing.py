@@ -21,13 +21,13 @@ import os
 import random
 import zlib
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 
-ROUNDS = 300_000
+ROUNDS = 100_000
 CELL = 8.0
 """Width of a cell, in tolerances."""
 CLEAR = 1.5
@@ -89,28 +89,70 @@ def derive(password: str, salt: bytes) -> bytes:
 
 
 class Keys:
-    """Derives keys side by side on the cores and keeps them in a file: each costs a tenth of a second."""
+    """Derives keys beside whatever else goes on, and keeps them in a file: each costs a good part of a second."""
 
     def __init__(self, store: Path | None = None) -> None:
         self.store = store
         self.known: dict[str, str] = json.loads(store.read_text("utf-8")) if store and store.exists() else {}
+        self.threads = ThreadPoolExecutor(max(1, (os.cpu_count() or 1) - 1))  # one core is left to who reads pages
+        self.begun: dict[str, Future[bytes]] = {}
+
+    def begin(self, passwords: list[str], salt: bytes) -> None:
+        """Start to derive the keys that some passwords stand for."""
+        for word in passwords:
+            name = self._name(word, salt)
+            if name not in self.known and name not in self.begun:
+                self.begun[name] = self.threads.submit(derive, word, salt)
 
     def of(self, passwords: list[str], salt: bytes) -> list[bytes]:
         """Return the keys that some passwords stand for."""
-        names = {word: hashlib.sha256(f"{ROUNDS} {_text(salt)} {word}".encode()).hexdigest() for word in passwords}
-        unknown = [word for word, name in names.items() if name not in self.known]
-        with ThreadPoolExecutor() as threads:
-            for word, key in zip(unknown, threads.map(lambda word: derive(word, salt), unknown), strict=True):
-                self.known[names[word]] = _text(key)
-        return [base64.b64decode(self.known[names[word]]) for word in passwords]
+        self.begin(passwords, salt)
+        names = [self._name(word, salt) for word in passwords]
+        for name in names:
+            if name in self.begun:
+                self.known[name] = _text(self.begun.pop(name).result())
+        return [base64.b64decode(self.known[name]) for name in names]
+
+    def _name(self, password: str, salt: bytes) -> str:
+        return hashlib.sha256(f"{ROUNDS} {_text(salt)} {password}".encode()).hexdigest()
 
     def save(self) -> None:
-        """Keep the keys."""
+        """Keep the keys, and end."""
+        self.threads.shutdown(cancel_futures=True)
         if self.store:
             self.store.parent.mkdir(parents=True, exist_ok=True)
             draft = self.store.with_suffix(f".{os.getpid()}")
             draft.write_text(json.dumps(self.known), "utf-8")
             draft.replace(self.store)
+
+
+def lock(question: dict[str, Any], seed: str) -> tuple[dict[str, Any], list[str], bytes]:
+    """Return what is public of a question, and what its keys are derived from: a password for each answer, and a salt.
+
+    Parameters
+    ----------
+    question : dict
+        What ``bookkit.question`` or ``bookkit.choice`` keeps.
+    seed : str
+        The page and the name of the question: the same question is sealed in the same way each time.
+    """
+    salt = hashlib.sha256(f"salt {seed}".encode()).digest()[:16]
+    public: dict[str, Any] = {"rounds": ROUNDS, "salt": _text(salt), "kind": question["kind"]}
+    answers = question["answers"]
+    if question["kind"] != "number":
+        return public, [",".join(map(str, answer["value"])) for answer in answers], salt
+    periods = question["periods"]
+    columns = list(zip(*(answer["value"] for answer in answers), strict=True))
+    lines = cuts(columns, question["decimals"], periods, seed)
+    public |= {"tolerance": tolerance(question["decimals"]), "periods": periods, "unit": question["unit"], **lines}
+    passwords = [
+        ",".join(
+            str(cell(value, start, lines["width"], period))
+            for value, start, period in zip(answer["value"], lines["starts"], periods, strict=True)
+        )
+        for answer in answers
+    ]
+    return public, passwords, salt
 
 
 def seal(question: dict[str, Any], seed: str, keys: Keys | None = None) -> dict[str, Any]:
@@ -119,30 +161,13 @@ def seal(question: dict[str, Any], seed: str, keys: Keys | None = None) -> dict[
     Parameters
     ----------
     question : dict
-        What ``bookkit.question`` or ``bookkit.choice`` keeps; what its answers say is HTML by now.
+        As for `lock`; what its answers say is HTML by now.
     seed : str
-        The page and the name of the question: the same question is sealed in the same way each time.
     keys : Keys, optional
         Where keys of earlier builds are kept.
     """
-    salt = hashlib.sha256(f"salt {seed}".encode()).digest()[:16]
-    public: dict[str, Any] = {"rounds": ROUNDS, "salt": _text(salt), "kind": question["kind"]}
-    answers = question["answers"]
-    if question["kind"] == "number":
-        periods = question["periods"]
-        columns = list(zip(*(answer["value"] for answer in answers), strict=True))
-        lines = cuts(columns, question["decimals"], periods, seed)
-        public |= {"tolerance": tolerance(question["decimals"]), "periods": periods, "unit": question["unit"], **lines}
-        passwords = [
-            ",".join(
-                str(cell(value, start, lines["width"], period))
-                for value, start, period in zip(answer["value"], lines["starts"], periods, strict=True)
-            )
-            for answer in answers
-        ]
-    else:
-        passwords = [",".join(map(str, answer["value"])) for answer in answers]
-    records, packed = [], [zlib.compress(json.dumps(answer).encode(), 9) for answer in answers]
+    public, passwords, salt = lock(question, seed)
+    records, packed = [], [zlib.compress(json.dumps(answer).encode(), 9) for answer in question["answers"]]
     length = max(map(len, packed))
     for plain, key in zip(packed, (keys or Keys()).of(passwords, salt), strict=True):
         # nor may their length tell which is right

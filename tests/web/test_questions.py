@@ -140,7 +140,21 @@ def test_a_cut_through_an_answer_would_be_found() -> None:
 
 def test_the_book_takes_its_time() -> None:
     source = (HERE.parent.parent / "book/extensions/sealing.py").read_text("utf-8")
-    assert "ROUNDS = 300_000" in source
+    assert "ROUNDS = 100_000" in source
+
+
+def test_keys_are_the_same_whenever_they_were_begun(tmp_path: Path) -> None:
+    words, salt = ["1,2", "3", "4"], b"salt"
+    at_once = sealing.Keys(tmp_path / "keys.json")
+    early = sealing.Keys()
+    early.begin(words, salt)
+    assert early.of(words, salt) == at_once.of(words, salt) == [sealing.derive(word, salt) for word in words]
+    assert early.of(["1,2"], b"other") != early.of(["1,2"], salt)
+    at_once.save()
+    later = sealing.Keys(tmp_path / "keys.json")
+    later.begin(words, salt)
+    assert not later.begun
+    assert later.of(words, salt) == early.of(words, salt)
 
 
 READ = {
