@@ -49,7 +49,7 @@ def test_arrays_of_any_shape():
     angles = np.linspace(-3, 3, 6).reshape(2, 3)
     turned = Rz(angles)
     assert turned.shape == (2, 3, 4, 4)
-    assert_array_equal(turned[1, 2], Rz(angles[1, 2]))
+    assert_allclose(turned[1, 2], Rz(angles[1, 2]), rtol=0, atol=5e-16)
     assert Tx([1, 2, 3]).shape == (3, 4, 4)
     assert inverse(turned).shape == (2, 3, 4, 4)
 
