@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from environment import BENCH, ROOT, machine, python_of, version_of
+from report import write_report
 
 #: Modules, and the tests that must notice a change in them, the quickest first.
 CONVENTIONS = "tests/dhlib/test_conventions.py tests/dhlib/test_transforms.py tests/dhlib/test_convert.py"
@@ -128,6 +129,7 @@ def main() -> None:
                 print(f"{module}:{row['line']} {row['operator']}", *row["diff"], sep="\n    ")
         text = json.dumps(about | {"rows": kept}, indent=1, ensure_ascii=False, sort_keys=True)
         target.write_text(text + "\n", encoding="utf-8")
+    write_report(BENCH / "results", BENCH / "RESULTS.md")
 
 
 if __name__ == "__main__":
