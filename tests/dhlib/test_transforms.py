@@ -1,3 +1,7 @@
+import sys
+from fractions import Fraction
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import sympy
@@ -6,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from dhlib import DHError, Rx, Ry, Rz, Tx, Ty, Tz, inverse
-from dhlib.scalars import has_symbols
+from dhlib.scalars import has_symbols, is_symbolic, quarter_turns, read_array
 from dhlib.transforms import pose_fault, read_pose
 
 ROTATIONS = {"x": Rx, "y": Ry, "z": Rz}
@@ -62,17 +66,55 @@ def test_symbols_stay_symbols():
     assert sympy.simplify(inverse(product) * product) == sympy.eye(4)
 
 
-@pytest.mark.parametrize("wrong", ["1", None, float("nan"), float("inf"), 1j, True, [1, "x"], sympy.nan, sympy.oo])
+NO_NUMBERS = ["1", None, float("nan"), float("inf"), 1j, True, [1, "x"], ["1", "2"], [True, False], sympy.nan, sympy.oo]
+
+
+@pytest.mark.parametrize("wrong", NO_NUMBERS)
 @pytest.mark.parametrize("transform", [*ROTATIONS.values(), *TRANSLATIONS.values()])
 def test_no_number_is_refused(transform, wrong):
     with pytest.raises(DHError, match=f"of {transform.__name__}"):
         transform(wrong)
 
 
+def test_numbers_of_any_kind_are_read():
+    lengths = np.array([1, Fraction(1, 2), np.float32(0.25)], dtype=object)
+    assert_array_equal(Tx(lengths)[:, 0, 3], [1, 0.5, 0.25])
+
+
+@pytest.mark.parametrize(("letters", "end"), [(3, "'xxx'"), (200, "x...")])
+def test_a_refusal_shows_what_was_given_in_no_more_than_a_line(letters, end):
+    with pytest.raises(DHError) as refused:
+        read_array("x" * letters, "q")
+    shown = str(refused.value).split("; ")[0]
+    assert shown.endswith(end)
+    assert len(shown) <= 90
+
+
+@pytest.mark.parametrize("k", [k for k in range(-8, 9) if k])
+def test_a_quarter_turn_may_be_off_by_its_last_digit(k):
+    """As np.deg2rad(270) is, on either side."""
+    for toward in (-np.inf, np.inf):
+        assert quarter_turns(float(np.nextafter(k * np.pi / 2, toward))) == k
+    assert quarter_turns(k * np.pi / 2 * (1 + 1e-15)) is None
+
+
+def test_nothing_is_a_symbol_while_sympy_is_being_imported(monkeypatch):
+    monkeypatch.setitem(sys.modules, "sympy", SimpleNamespace())
+    assert not is_symbolic(1.0)
+    assert not has_symbols([1.0, "theta"])
+
+
+def test_a_pose_of_symbols_is_taken_as_it_is():
+    pose = Rz(SYMBOL) * Tx(2)
+    assert read_pose(pose, "base") == pose
+
+
 @pytest.mark.parametrize(
     ("spoilt", "words"),
     [
         (np.eye(3), "shape"),
+        (sympy.eye(3), "shape"),
+        (sympy.diag(SYMBOL, 1, 1), "shape"),
         (np.diag([1, 1, -1, 1]), "left-handed"),
         (np.diag([2, 1, 1, 1]), "column n has length 2"),
         (Tx(3).T, "transposed"),

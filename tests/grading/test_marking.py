@@ -135,7 +135,18 @@ def test_close_values_are_told_to_round_later(judge, solved):
     got = judge("T4", np.round(solved["T4"], 2))
     assert got.verdict == "nearly"
     assert got.points == 1
+    assert "(lengths: " in got.message
     assert "Round only at the end" in got.message
+
+
+def test_only_a_pose_has_a_tolerance_of_its_own_for_lengths():
+    hand = Part(
+        "p", "Hand", 1, Numbers(lambda arm, q: arm.fk(q)[:3, 3], shape=(3,), at=(0.5, 1.0)), arm=robots.planar(2)
+    )
+    close = robots.planar(2).fk([0.5, 1.0])[:3, 3] + 3 * hand.asks.tolerance
+    got = mark(hand, read_answer(hand.asks.request(), close))
+    assert got.verdict == "nearly"
+    assert "lengths" not in got.message
 
 
 # What is wrong with a matrix, before it is compared
@@ -187,6 +198,12 @@ def test_the_same_product_alone_is_wrong(exercise, solved):
     assert marks_of(exercise, {"T4": product})["T4"].verdict == "wrong"
 
 
+def test_nothing_follows_from_a_link_that_is_not_there(exercise, solved):
+    links = {name: solved[name] for name in ("A2", "A3", "A4")}
+    product = links["A2"] @ links["A3"] @ links["A4"]
+    assert marks_of(exercise, links | {"T4": product})["T4"].verdict == "wrong"
+
+
 def test_all_links_wrong_without_a_reason_carry_nothing(exercise):
     values = dict.fromkeys(("A1", "A2", "A3", "A4", "T4"), np.eye(4))
     assert marks_of(exercise, values)["T4"].verdict == "wrong"
@@ -210,6 +227,7 @@ def test_a_convention_confused_throughout_is_punished_in_the_links_alone(exercis
     [
         None, 3, "right", [], {}, {"values": None}, {"values": []}, {"values": [1]}, {"values": "x" * 10},
         {"values": [[[1, 0, 0, 0]] * 3]}, {"values": [[[True] * 4] * 4]}, {"values": [[["1"] * 4] * 4]},
+        {"values": [[[1, 0, 0, 0]] * 4] * 99},
         {"values": [[[None] * 4] * 4]}, {"values": [[[1e300] * 4] * 4]}, {"values": [[[10**400] * 4] * 4]},
         {"values": [[[float("nan")] * 4] * 4]}, {"values": [[[float("inf")] * 4] * 4]},
         {"values": {"0": 1}}, {"verdict": "right", "points": 30}, {"fault": 3}, {"fault": None},
@@ -345,6 +363,7 @@ WHY = reasoned(
         (("no", "a", "b", "c"), "nearly", 1.5, "reason b is none: it is not longer."),
         (("no", "b"), "nearly", 0, "reason b is none"),
         (("yes", "a", "c"), "wrong", 0, "Look again."),
+        (("yes", "d", "b"), "wrong", 0, "And reason b does not hold: it is not longer."),
         (("yes", "no", "a"), "unreadable", 0, "one of yes, no and then letters from a to d"),
         (("no", "x"), "unreadable", 0, "letters from a to d"),
         ("a", "unreadable", 0, ""),
