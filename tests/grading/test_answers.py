@@ -151,6 +151,12 @@ def test_where_a_formula_has_no_value_there_is_none():
     assert read_answer(FORMULA, 1 / (t1 - 0.5)) == {"values": [None, 2.0]}
 
 
+@pytest.mark.parametrize("value", [complex("nan"), complex("inf"), complex("nanj"), complex("infj"), 1e300 + 0j])
+def test_a_number_without_an_end_is_no_value(value):
+    assert answers._real_or_none(value) is None
+    assert answers._real_or_none(2 + 1e-9j) == 2.0
+
+
 def test_a_formula_of_numbers_is_constant():
     assert read_answer(FORMULA, 0.5) == {"values": [0.5, 0.5]}
 
