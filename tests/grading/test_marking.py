@@ -358,7 +358,7 @@ WHY = reasoned(
         (("no", {"a", "c"}), "right", 4, ""),
         ({"no": ["a", "c"]}, "right", 4, ""),
         (("no", "ac"), "right", 4, ""),
-        (("no", [[["a"]], "c"]), "right", 4, ""),
+        (("no", [[["a", "c"]]]), "right", 4, ""),
         ("no", "nearly", 0, "now say why: which of the reasons a b c d hold?"),
         (("no", "a"), "nearly", 1.5, "there are more"),
         (("no", "a", "b", "c"), "nearly", 1.5, "reason b is none: it is not longer."),
