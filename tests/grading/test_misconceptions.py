@@ -7,14 +7,14 @@ import pytest
 import sympy as sp
 from sampling import FULL, some
 
-from dhlib import Chain, robots
+from dhlib import Chain, Prismatic, Revolute, robots
 from dhlib.grading.course.variants import Variants
 from dhlib.grading.diagnosis import Case, Tally, as_row, cases, other_chains, read, wrong_readings
 from dhlib.grading.exercise import load_exercise
 from dhlib.grading.forms import Choice, Valued
 from dhlib.grading.marking import mark
 from dhlib.grading.marks import Mark
-from dhlib.grading.misconceptions import KNOWN, told_frames
+from dhlib.grading.misconceptions import KNOWN, _clause, retellings, told_frames
 from dhlib.grading.sections import CHAPTERS
 
 #: At least this share of wrong answers is named exactly, over all parts. The rest cannot be told apart: a link matrix
@@ -89,6 +89,117 @@ def test_other_tables_of_an_arm_are_that_arm():
         for q in random.uniform(-2, 2, (3, arm.n)):
             for name, other in others.items():
                 assert np.abs(other.fk(q) - arm.fk(q)).max() < 1e-9 * max(1, arm.reach), name
+
+
+# Each retelling, on an arm whose every number is another one
+
+
+JOINTS = (
+    Revolute(d=1.0, a=2.0, alpha=0.1, offset=0.3),
+    Prismatic(theta=0.2, a=3.0, alpha=0.4, offset=0.5, sign=-1),
+    Revolute(d=4.0, a=5.0, alpha=0.6),
+)
+
+
+def told(convention, joints=JOINTS):
+    """Key and sentence to the tables of the arms that are told by it, a row (kind, sign, θ, d, a, α) for each joint."""
+    tables = {}
+    for key, says, arm in retellings(Chain(joints, convention)):
+        if isinstance(arm, Chain):
+            rows = [(j.kind, j.sign, j.theta, j.d, j.a, j.alpha) for j in arm.joints]
+            tables.setdefault((key, says.replace("{part}", "A")), []).append(rows)
+    return tables
+
+
+def changed(*changes):
+    """The table with some entries (joint, column, value) that are others."""
+    rows = [[j.kind, j.sign, j.theta, j.d, j.a, j.alpha] for j in JOINTS]
+    for joint, column, value in changes:
+        rows[joint - 1][("kind", "sign", "theta", "d", "a", "alpha").index(column)] = value
+    return [tuple(row) for row in rows]
+
+
+@pytest.mark.parametrize("convention", ["classic", "modified"])
+def test_each_slip_is_told_as_it_is_made(convention):
+    """Written by hand, once more: what the sentence says is what is changed in the table."""
+    first = 1 if convention == "classic" else 0
+    one, two, three = range(first, first + 3)
+    expected = {
+        ("offset", "In A joint 1 starts from another zero: θ is q1 plus an offset."): [
+            changed((1, "theta", 0.0)), changed((1, "theta", -0.3))],
+        ("offset", "In A joint 2 starts from another zero: d is q2 plus an offset."): [
+            changed((2, "d", 0.0)), changed((2, "d", -0.5))],
+        ("offset", "In A the offsets between q and θ are missing."): [
+            changed((1, "theta", 0.0), (2, "d", 0.0), (3, "theta", 0.0))],
+        ("sense", "In A joint 1 turns the wrong way: compare the sign of θ1 with the direction of its axis."): [
+            changed((1, "sign", -1))],
+        ("sense", "In A joint 2 slides the wrong way: compare the sign of d2 with the direction of its axis."): [
+            changed((2, "sign", 1))],
+        ("sense", "In A all joints turn the wrong way: positive is by the right-hand rule about z."): [
+            changed((1, "sign", -1), (2, "sign", 1), (3, "sign", -1))],
+        ("joint_kind", "In A the variable of joint 3 stands in d; it is revolute, so q3 belongs into θ."): [
+            changed((3, "kind", "P"))],
+        ("joint_kind", "In A joint 2 turns where it should slide; it is prismatic, so q2 belongs into d."): [
+            changed((2, "kind", "R"))],
+        ("sign", f"In A α_{one} has the wrong sign."): [changed((1, "alpha", -0.1))],
+        ("sign", f"In A α_{three} has the wrong sign."): [changed((3, "alpha", -0.6))],
+        ("sign", "In A every α has the wrong sign: α turns z into the next z, by the right-hand rule about x."): [
+            changed((1, "alpha", -0.1), (2, "alpha", -0.4), (3, "alpha", -0.6))],
+        ("length_sign", f"In A a_{two} has the wrong sign: it is measured along x_{two}, from axis to axis."): [
+            changed((2, "a", -3.0))],
+        ("length_sign", "In A d_3 has the wrong sign: it counts from x_2 to x_3, along joint axis 3."): [
+            changed((3, "d", -4.0))],
+        ("length_sign", "In A every a has the wrong sign: a is measured along x."): [
+            changed((1, "a", -2.0), (2, "a", -3.0), (3, "a", -5.0))],
+        ("a_and_d", f"In A a_{one} and d_1 are exchanged: d is measured along z, a along x."): [
+            changed((1, "a", 1.0), (1, "d", 2.0))],
+        ("lengths", f"In A a_{one} and a_{two} have changed places: a_{one} is the length of link {one}, which stands "
+                    f"before joint {two}."): [changed((1, "a", 3.0), (2, "a", 2.0))],
+        ("lengths", f"In A a_{two} and a_{three} have changed places: a_{two} is the length of link {two}, which "
+                    f"stands before joint {three}."): [changed((2, "a", 5.0), (3, "a", 3.0))],
+    }  # fmt: skip
+    tables = told(convention)
+    for slip, arms in expected.items():
+        assert tables[slip] == arms, slip
+    link = {"classic": "the link behind joint i", "modified": "the link before joint i"}[convention]
+    for words, rows in (("down", (3, 1, 2)), ("up", (2, 3, 1))):
+        says = f"In A the columns a and α stand one row too far {words}: in the {convention} convention row i "
+        says += f"holds {link}."
+        links = [(JOINTS[k - 1].a, JOINTS[k - 1].alpha) for k in rows]
+        assert [row[4:] for row in tables["row", says][1]] == links
+        links[0 if words == "down" else 2] = (0.0, 0.0)
+        assert [row[4:] for row in tables["row", says][0]] == links
+
+
+def test_what_no_slip_would_change_is_not_told():
+    """No offset to forget, no length to exchange."""
+    keys = {key for key, _ in told("classic", [Revolute(d=1.0, a=2.0), Revolute(alpha=0.3), Revolute(a=5.0)])}
+    assert not keys & {"offset", "lengths"}
+    assert {"sense", "sign", "length_sign", "row"} <= keys
+
+
+def test_each_link_of_a_product_can_be_missing():
+    without = [arm.without for key, _, arm in retellings(Chain(JOINTS, "classic")) if key == "missing"]
+    assert without == [1, 2, 3]
+
+
+def test_the_list_of_misconceptions_is_numbered_and_takes_no_points():
+    assert [known.number for known in KNOWN.values()] == list(range(1, len(KNOWN) + 1))
+    assert {key for key, known in KNOWN.items() if known.credit == 0.5} >= {"convention", "sign", "offset", "sense"}
+    assert all(0 <= known.credit <= 1 for known in KNOWN.values())
+
+
+@pytest.mark.parametrize(
+    ("says", "clause"),
+    [
+        ("In A1 joint 3 turns the wrong way: compare signs.", "joint 3 turns the wrong way"),
+        ("The factors of T stand in reverse order: look.", "the factors of T stand in reverse order"),
+        ("Your A1 is right for the other convention; this asks for one.", "your A1 is right for the other convention"),
+        ("DH1 fails. So look.", "DH1 fails"),
+    ],
+)
+def test_a_sentence_becomes_a_clause(says, clause):
+    assert _clause(says) == clause
 
 
 def test_which_misconceptions_show_in_the_exercise(exercise):
