@@ -560,8 +560,8 @@ def coverage(result: Result) -> list[Table]:
     return [
         Table(
             "How much of the library its tests run",
-            "Lines, and ways that a branch can go; without the five files that run within the sandbox, where nothing can "
-            "be written down.",
+            "Lines, and ways that a branch can go; without the five files that run within the sandbox, which can write "
+            "nothing down.",
             ["part", "lines", "branches"],
             rows,
             _missing(result),
