@@ -9,7 +9,9 @@ from pathlib import Path
 import pytest
 
 from dhlib.cli import main
+from dhlib.grading.batch import command, run
 from dhlib.grading.batch.intake import collect
+from dhlib.grading.batch.run import Summary
 from dhlib.grading.reports.cells import safe
 
 ROOT = Path(__file__).parents[2]
@@ -92,6 +94,8 @@ def test_misuse_is_said_in_a_sentence(tmp_path, monkeypatch, capsys, arguments, 
         ["grade", ".", "--out", "x", "--timeout", "-1"],
         ["grade", ".", "--out", "x", "--workers", "0"],
         ["grade", ".", "--out", "x", "--timeout", "soon"],
+        ["grade", ".", "--out", "x", "--shard", "6/5"],
+        ["grade", ".", "--out", "x", "--shard", "two"],
     ],
 )
 def test_wrong_arguments_show_the_usage(capsys, arguments):
@@ -105,6 +109,30 @@ def test_out_that_is_a_file_is_said(tmp_path, capsys):
     (tmp_path / "out").write_text("x")
     assert main(["grade", str(ROOT / "exercises"), "--out", str(tmp_path / "out")]) == 2
     assert "is a file" in capsys.readouterr().err
+
+
+def test_whoever_stops_it_is_told_that_nothing_is_lost(tmp_path, monkeypatch, capsys):
+    def stopped(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(run, "grade_class", stopped)
+    assert main(["grade", str(tmp_path), "--out", str(tmp_path / "out"), "--shard", "2/5"]) == 130
+    assert "the same command goes on where it was" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("summary", "words"),
+    [
+        (Summary(found=3, done=3, status={"graded": 3}), "3 graded."),
+        (Summary(found=3, done=1, kept=2, status={"graded": 3}), "1 graded now, 2 before."),
+        (
+            Summary(found=3, done=3, status={"graded": 1, "unreadable": 2}, problems=4),
+            "3 graded.\nLook at: 2 unreadable.\n4 more to look at: problems.csv lists them.",
+        ),
+    ],
+)
+def test_what_a_run_did_is_said(summary, words):
+    assert command.in_words(summary) == words
 
 
 def test_what_the_system_refuses_is_said(tmp_path, capsys):

@@ -1,5 +1,6 @@
 """Every misconception that shows in a part is caught there, and named."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from sampling import FULL, some
 from dhlib import Chain, Prismatic, Revolute, robots
 from dhlib.grading.course.variants import Variants
 from dhlib.grading.diagnosis import Case, Tally, as_row, cases, other_chains, read, wrong_readings
+from dhlib.grading.diagnosis import main as diagnosis
 from dhlib.grading.exercise import load_exercise
 from dhlib.grading.forms import Choice, Valued
 from dhlib.grading.marking import mark
@@ -57,6 +59,21 @@ def test_the_figures_add_up():
     assert [sum(column) for column in zip(*exercises.values(), strict=True)] == FIGURES["all"]
     assert sorted(exercises) == sorted(path.stem for path in (ROOT / "solutions").glob("*.ipynb"))
     assert FIGURES["all"][0] >= 80
+
+
+def test_the_tallies_are_written_as_the_book_reads_them(tmp_path, capsys):
+    solutions, out = tmp_path / "solutions", tmp_path / "diagnosis.csv"
+    solutions.mkdir()
+    shutil.copy(ROOT / "solutions" / "one_link.ipynb", solutions)
+    folders = ["--solutions", str(solutions), "--exercises", str(ROOT / "exercises")]
+    assert diagnosis([*folders, "--out", str(out)]) == 0
+    assert read(out)["one_link"] == read(out)["all"] == FIGURES["one_link"]
+    out.unlink()
+    assert diagnosis([*folders, "one_link"]) == 0
+    assert "one_link: " in capsys.readouterr().out
+    assert not out.exists()
+    assert diagnosis([*folders, "no_such"]) == 2
+    assert "no_such" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
