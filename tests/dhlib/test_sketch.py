@@ -302,6 +302,23 @@ def test_steps_end_in_the_link() -> None:
         }
 
 
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        ("links", set()),
+        ("joints", set()),
+        ("frames", {f"{letter}_{i}" for letter in "xz" for i in range(5)}),
+        ("lengths", {"d_1", "a_1", "a_2", "d_3", "d_4"}),
+        ("axes", {"1", "2", "3", "4"}),
+        ("angles", {"θ_1", "θ_2", "θ_3", "θ_4", "α_1", "α_3"}),
+    ],
+)
+def test_each_part_of_a_figure_can_stand_alone(part: str, words: set[str]) -> None:
+    drawing = sketch(robots.quickshot(), [0.3] * 4, show=(part,))
+    assert {label.text for label in drawing.labels} == words
+    assert drawing.body != sketch(robots.quickshot(), [0.3] * 4, show=()).body
+
+
 def test_misuse_is_explained() -> None:
     arm = robots.quickshot()
     with pytest.raises(DHError, match="'bones'"):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from dhlib import DHError, Rx, Ry, Rz, Tx, Ty, Tz, inverse
-from dhlib.scalars import has_symbols, is_symbolic, quarter_turns, read_array
+from dhlib.scalars import has_symbols, is_symbolic, quarter_turns, read_array, to_float
 from dhlib.transforms import pose_fault, read_pose
 
 ROTATIONS = {"x": Rx, "y": Ry, "z": Rz}
@@ -66,7 +66,10 @@ def test_symbols_stay_symbols():
     assert sympy.simplify(inverse(product) * product) == sympy.eye(4)
 
 
-NO_NUMBERS = ["1", None, float("nan"), float("inf"), 1j, True, [1, "x"], ["1", "2"], [True, False], sympy.nan, sympy.oo]
+NO_NUMBERS = [
+    *("1", None, float("nan"), float("inf"), 1j, True, [1, "x"], ["1", "2"], [True, False]),
+    *(sympy.nan, sympy.oo, sympy.Matrix([1])),
+]
 
 
 @pytest.mark.parametrize("wrong", NO_NUMBERS)
@@ -102,6 +105,13 @@ def test_nothing_is_a_symbol_while_sympy_is_being_imported(monkeypatch):
     monkeypatch.setitem(sys.modules, "sympy", SimpleNamespace())
     assert not is_symbolic(1.0)
     assert not has_symbols([1.0, "theta"])
+
+
+@pytest.mark.parametrize(
+    ("value", "number"), [(2, 2.0), (sympy.pi, np.pi), (sympy.Rational(1, 4), 0.25), (SYMBOL, None)]
+)
+def test_a_scalar_is_a_float_where_it_can_be(value, number):
+    assert to_float(value) == number
 
 
 def test_a_pose_of_symbols_is_taken_as_it_is():
