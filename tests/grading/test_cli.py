@@ -1,6 +1,7 @@
 """``dhlib grade`` as its user meets it."""
 
 import csv
+import io
 import json
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import pytest
 from dhlib.cli import main
 from dhlib.grading.batch import command, run
 from dhlib.grading.batch.intake import collect
+from dhlib.grading.batch.progress import Progress
 from dhlib.grading.batch.run import Summary
 from dhlib.grading.reports.cells import safe
 
@@ -133,6 +135,37 @@ def test_whoever_stops_it_is_told_that_nothing_is_lost(tmp_path, monkeypatch, ca
 )
 def test_what_a_run_did_is_said(summary, words):
     assert command.in_words(summary) == words
+
+
+class Terminal(io.StringIO):
+    """What is written to somebody's screen."""
+
+    encoding = "ascii"
+
+    def isatty(self):
+        return True
+
+
+def test_on_a_screen_there_is_a_bar_and_lines_stand_above_it():
+    screen = Terminal()
+    with Progress(2, screen) as progress:
+        progress.advance()
+        progress.say("Müller: \x1b[31mstopped")
+        progress.advance()
+    shown = screen.getvalue()
+    assert "M\\xfcller:  [31mstopped\n" in shown
+    assert "2/2" in shown
+    assert "\x1b[31m" not in shown
+
+
+def test_in_a_file_there_are_lines_alone():
+    written = io.StringIO()
+    with Progress(1000, written) as progress:
+        for _ in range(1000):
+            progress.advance()
+    lines = written.getvalue().splitlines()
+    assert lines[-1] == "1000 of 1000 notebooks"
+    assert 1 < len(lines) <= 40
 
 
 def test_what_the_system_refuses_is_said(tmp_path, capsys):

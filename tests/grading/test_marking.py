@@ -10,6 +10,7 @@ import sympy as sp
 
 from dhlib import Chain, Revolute, Rz, robots
 from dhlib.errors import DHError
+from dhlib.grading import checker, form_checker, page
 from dhlib.grading.answers import read_answer
 from dhlib.grading.asking import number, reasoned
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap, load_exercise
@@ -219,6 +220,30 @@ def test_a_convention_confused_throughout_is_punished_in_the_links_alone(exercis
     assert marks["T4"].verdict == "follows"
 
 
+# The page asks for one part
+
+
+def test_the_page_is_told_what_the_notebook_is_told(solved):
+    names = {"check": checker("quickshot"), "A1": solved["A1"], "slip": "n_y"}
+    assert page.check(names, "A1")["passed"]
+    stopped = page.check(names, "A1", "NameError: name 'q' is not defined")
+    assert (stopped["passed"], stopped["points"]) == (False, 0)
+    assert "NameError: name 'q' is not defined" in stopped["says"]
+    assert not page.check(names, "A2")["passed"]
+    assert page.check(names | {"check": 3}, "A1") == {"passed": False, "says": page.GONE, "points": None}
+
+
+def test_the_page_of_a_closed_course_is_told_of_the_form_alone(solved):
+    forms = {part: {"form": "numbers", "shape": [4, 4]} for part in ("A1", "A2", "A3")}
+    names = {"check": form_checker("quickshot", forms), "A1": np.eye(4), "A2": np.eye(3)}
+    good, bad, none = (page.check(names, part) for part in ("A1", "A2", "A3"))
+    assert good["passed"]
+    assert not bad["passed"]
+    assert "A2 has 3 rows and 3 columns" in bad["says"]
+    assert not none["passed"]
+    assert {told["points"] for told in (good, bad, none)} == {None}
+
+
 # Nothing from the box is trusted
 
 
@@ -263,6 +288,16 @@ def test_an_exercise_with_a_doubled_part_is_refused(arm):
     part = Part("A", "A", 1, Choice({"x": "yes"}, "x"))
     with pytest.raises(DHError, match="twice"):
         Exercise("e", "E", arm, [part, part])
+
+
+def test_an_exercise_that_could_not_be_answered_is_refused(arm, tmp_path):
+    with pytest.raises(DHError, match="'A 1' should be a name of a variable"):
+        Exercise("e", "E", arm, [Part("A 1", "A", 1, Choice({"x": "yes"}, "x"))])
+    with pytest.raises(DHError, match="part A has no arm"):
+        _ = Part("A", "A", 1, Choice({"x": "yes"}, "x")).chain
+    (tmp_path / "empty.py").write_text("EXERCISE = 3\n", "utf-8")
+    with pytest.raises(DHError, match=r"should end with EXERCISE = Exercise"):
+        load_exercise("empty", tmp_path)
 
 
 def test_a_part_can_only_follow_from_earlier_ones(arm):
