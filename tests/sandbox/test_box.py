@@ -71,9 +71,11 @@ def test_a_box_imports_what_a_notebook_needs_before_its_time_begins(name):
 
 
 @pytest.mark.sandbox
-def test_what_is_needed_in_other_words_is_imported_within_the_time(walls):
+def test_what_is_needed_in_other_words_is_imported_within_the_time():
     hidden = "A = float(__import__('sym' + 'py').sqrt(4)) + __import__('matp' + 'lotlib').cm.viridis(0.0)[3]"
-    assert value(walls.run(cells(hidden), REQUESTS)) == [3.0]
+    with Sandbox(Limits(60.0, 120.0)) as sandbox_:
+        assert value(sandbox_.run(cells(hidden), REQUESTS)) == [3.0]
+        assert sandbox_._box.warmed == set()
 
 
 @pytest.mark.sandbox
