@@ -113,8 +113,8 @@ def link_screw(a: Scalar, alpha: Scalar) -> Pose:
 
     Examples
     --------
-    >>> link_screw(20, 0)[0, 3]
-    np.float64(20.0)
+    >>> float(link_screw(20, 0)[0, 3])
+    20.0
     """
     return classic(0, 0, a, alpha)
 

@@ -84,8 +84,8 @@ def planar(n: int = 2, convention: str = "classic") -> Chain:
 
     Examples
     --------
-    >>> planar(3).fk([0, 0, 0])[0, 3]
-    np.float64(3.0)
+    >>> float(planar(3).fk([0, 0, 0])[0, 3])
+    3.0
     """
     if not isinstance(n, int) or isinstance(n, bool) or n < 1:
         raise DHError(f"planar({n!r}): the number of joints should be a whole number, 1 or more.")
@@ -215,8 +215,8 @@ def pa10_7c(convention: str = "classic", lengths: str = "A") -> Chain:
 
     Examples
     --------
-    >>> pa10_7c().fk([0] * 7)[2, 3].round(3)
-    np.float64(1.317)
+    >>> round(float(pa10_7c().fk([0] * 7)[2, 3]), 3)
+    1.317
     """
     _choose("lengths", lengths, dict(_PA10))
     b, l1, l2, f = _PA10[lengths]
@@ -241,8 +241,8 @@ def pa10_6c(convention: str = "classic", lengths: str = "A") -> Chain:
 
     Examples
     --------
-    >>> pa10_6c().fk([0] * 6)[2, 3].round(3)
-    np.float64(1.317)
+    >>> round(float(pa10_6c().fk([0] * 6)[2, 3]), 3)
+    1.317
     """
     _choose("lengths", lengths, dict(_PA10))
     b, l1, l2, f = _PA10[lengths]
@@ -347,8 +347,8 @@ def panda(convention: str = "modified") -> Chain:
 
     Examples
     --------
-    >>> panda().tool[2, 3]
-    np.float64(0.107)
+    >>> float(panda().tool[2, 3])
+    0.107
     """
     rows = [
         (0, 0, 0.333),
@@ -375,8 +375,8 @@ def iiwa14(convention: str = "classic") -> Chain:
 
     Examples
     --------
-    >>> iiwa14().fk([0] * 7)[2, 3].round(3)
-    np.float64(1.306)
+    >>> round(float(iiwa14().fk([0] * 7)[2, 3]), 3)
+    1.306
     """
     rows = [(0, -90, 0.36), (0, 90, 0), (0, 90, 0.42), (0, -90, 0), (0, -90, 0.40), (0, 90, 0), (0, 0, 0.126)]
     return _in(convention, Chain(_revolute(rows), "classic", name="KUKA LBR iiwa 14"))
