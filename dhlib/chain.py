@@ -423,6 +423,11 @@ class Chain:
         callable
             Takes q (…, n), numbers only and unchecked, and returns (…, 4, 4).
 
+        Raises
+        ------
+        DHError
+            If the chain holds symbols.
+
         Examples
         --------
         >>> from dhlib import robots
