@@ -126,8 +126,9 @@ class DhRobot extends LiveFigure {
 
   /** Fetch three.js when the figure is nearly in view; where there is no WebGL the flat drawing stays. */
   #wakeWhenNear() {
-    const watch = new IntersectionObserver(async ([{ isIntersecting }]) => {
-      if (!isIntersecting) return;
+    // A busy page tells of several moments at once: what counts is whether the figure was near at any of them.
+    const watch = new IntersectionObserver(async (moments) => {
+      if (!moments.some(({ isIntersecting }) => isIntersecting)) return;
       watch.disconnect();
       const Space = await loadSpace();
       try {

@@ -90,3 +90,23 @@ def test_any_key_is_enough(browser: Any, address: str) -> None:
     page.keyboard.press("Shift")
     page.wait_for_function(f"{ALIVE} && {PLACES} === 0")
     page.context.close()
+
+
+#: A browser so busy that, each time it tells what is seen, it first tells of a moment before.
+LATE = """
+const Observer = IntersectionObserver;
+window.IntersectionObserver = class extends Observer {
+    constructor(act, options) {
+        super((entries, self) => act([{ target: entries[0].target, isIntersecting: false }, ...entries], self), options);
+    }
+};
+"""
+
+
+def test_a_busy_browser_gets_its_arm_in_space(browser: Any, address: str) -> None:
+    page = opened(browser, address, LATE)
+    page.goto(f"{address}/book/pa10.html")
+    page.wait_for_function(
+        "() => { const arm = document.querySelector('dh-robot'); arm.scrollIntoView(); return arm.space; }"
+    )
+    page.context.close()
