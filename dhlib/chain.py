@@ -16,7 +16,7 @@ import numpy as np
 
 from dhlib.conventions import classic, link_screw, modified, read_convention
 from dhlib.errors import DHError, DHWarning
-from dhlib.forward import Columns, ScrewX, ScrewZ, to_rows, walk, write
+from dhlib.forward import Columns, ScrewX, ScrewZ, to_pose, to_rows, walk, write
 from dhlib.joints import Joint, Limits, Prismatic, Revolute
 from dhlib.scalars import (
     Scalar,
@@ -320,7 +320,7 @@ class Chain:
                 _, end = _last(walk(self._exact_screws(q)))
                 return _exact_matrix(self._prefix) * matrix(to_rows(end)) * _exact_matrix(self.tool)
             _, end = _last(walk(self._screws(q)))
-            return self._between_ends(np.array(to_rows(end), dtype=np.float64) + 0.0)
+            return self._between_ends(to_pose(end))
         rows = q.reshape(-1, self.n)
         poses = np.empty((len(rows), 4, 4))
         for start in range(0, len(rows), CHUNK):
@@ -569,23 +569,21 @@ class Chain:
 
     def _read_q(self, q: Any) -> Any:
         """Return one joint vector as a list, and several as an array (…, n)."""
-        if has_symbols(q):
+        if type(q) is np.ndarray and q.dtype == np.float64:  # asked first, since most of the time it is so
+            array = q
+        elif has_symbols(q):
             return self._read_symbols(q)
-        array = q if isinstance(q, np.ndarray) and q.dtype == np.float64 else read_array(q, "q")
+        else:
+            array = read_array(q, "q")
         if array.shape[-1:] != (self.n,):
             shape = f"{array.shape[-1]} values" if array.ndim else "one number"
             raise DHError(f"q has {shape}, but this chain has {self.n} joints ({self.kinds}): give {self.n} values.")
-        if array.ndim == 1:
-            values = array.tolist()
-            low, high, finite = min(values), max(values), math.isfinite(sum(values))
-        elif array.size:
-            low, high, finite = array.min(), array.max(), math.isfinite(array.sum())
-            values = array
-        else:
-            return array
-        if not finite and not np.all(np.isfinite(array)):
+        values = array.tolist() if array.ndim == 1 else array
+        if not array.size or (array.ndim == 1 and math.hypot(*values) <= SUSPICIOUS_ANGLE):
+            return values  # no entry is larger than the length of the vector, and NaN is in no order
+        if not np.all(np.isfinite(array)):
             raise DHError("q holds NaN or infinity; every joint value should be a finite number.")
-        if low < -SUSPICIOUS_ANGLE or high > SUSPICIOUS_ANGLE:
+        if max(-array.min(), array.max()) > SUSPICIOUS_ANGLE:
             self._warn_of_degrees(array)
         if self.is_symbolic and array.ndim > 1:
             raise DHError("this chain holds symbols, so it takes one joint vector at a time.")

@@ -66,6 +66,13 @@ def to_rows(columns: Columns) -> list[list[Scalar]]:
     return [[nx, ox, ax, px], [ny, oy, ay, py], [nz, oz, az, pz], [0, 0, 0, 1]]
 
 
+def to_pose(columns: Columns) -> FloatArray:
+    """The twelve entries, floats, as an array (4, 4)."""
+    nx, ny, nz, ox, oy, oz, ax, ay, az, px, py, pz = columns
+    pose = np.array([nx, ox, ax, px, ny, oy, ay, py, nz, oz, az, pz, 0.0, 0.0, 0.0, 1.0]).reshape(4, 4)
+    return np.add(pose, 0.0, out=pose)  # turns -0.0 into 0.0
+
+
 def write(columns: Columns, out: FloatArray | Any) -> None:
     """Write the twelve entries, floats or arrays (N,), into a block (N, 4, 4)."""
     for k, entry in enumerate(columns):
