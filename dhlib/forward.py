@@ -69,7 +69,7 @@ def to_rows(columns: Columns) -> list[list[Scalar]]:
 def to_pose(columns: Columns) -> FloatArray:
     """The twelve entries, floats, as an array (4, 4)."""
     nx, ny, nz, ox, oy, oz, ax, ay, az, px, py, pz = columns
-    pose = np.array([nx, ox, ax, px, ny, oy, ay, py, nz, oz, az, pz, 0.0, 0.0, 0.0, 1.0]).reshape(4, 4)
+    pose: FloatArray = np.array([nx, ox, ax, px, ny, oy, ay, py, nz, oz, az, pz, 0.0, 0.0, 0.0, 1.0]).reshape(4, 4)
     return np.add(pose, 0.0, out=pose)  # turns -0.0 into 0.0
 
 
