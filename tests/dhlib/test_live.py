@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+import sympy
 
 from dhlib import Chain, DHError, Prismatic, Revolute, live, robots
 from dhlib.export import chain_data, figure_data
@@ -102,6 +103,18 @@ def test_mistakes_are_told_and_change_nothing(page, mistake, words):
     with pytest.raises(DHError, match=words):
         mistake()
     assert page.sent == []
+
+
+@pytest.mark.parametrize(
+    ("use", "words"),
+    [
+        (lambda arm: live_figure("arm", arm), "a figure cannot show. Give them values first."),
+        (chain_data, "cannot be exported. Give them values first."),
+    ],
+)
+def test_an_arm_without_numbers_cannot_be_shown_or_exported(use, words):
+    with pytest.raises(DHError, match=f"this chain holds symbols, which {words}"):
+        use(Chain([Revolute(a=sympy.Symbol("a1"))], "classic"))
 
 
 def test_a_page_without_figures_says_so(monkeypatch):

@@ -36,6 +36,13 @@ def test_the_variable_shows_its_offset_and_sign():
     assert "a3" in shown
 
 
+def test_a_twist_without_a_value_is_shown_as_its_symbol():
+    twist = sympy.Symbol("alpha1")
+    arm = Chain([Revolute(alpha=twist), Revolute(alpha=twist / 2)], "classic")
+    assert [line.split("|")[-1].strip() for line in repr(arm).splitlines()[2:]] == ["alpha1", "alpha1/2"]
+    assert "<td>alpha1/2</td>" in arm._repr_html_()
+
+
 def test_a_name_cannot_smuggle_markup():
     arm = Chain([Revolute()], "classic", name="<script>")
     assert "<script>" not in arm._repr_html_()

@@ -229,6 +229,40 @@ def test_an_axis_towards_the_reader_is_a_ring() -> None:
     assert 'class="z' in scene.svg(view=(0, 90))
 
 
+def test_an_axis_away_from_the_reader_is_a_ring_with_a_cross() -> None:
+    scene = Scene()
+    scene.add_frame(np.eye(4), "0")
+    towards, away = (scene.svg(view=view).split('class="ring"')[1].split("</g>")[0] for view in ((0, 0), (180, 0)))
+    assert "<path" not in towards
+    assert away.count("<path") == 1
+
+
+def test_a_length_along_the_line_of_sight_is_lettered_beside_its_end() -> None:
+    scene = Scene()
+    scene.add_segment([0, -1, 0], [0, 1, 0], kind="line")
+    scene.add_segment([0, 0, 0], [1, 0, 0], "d")
+    drawing = scene.sketch(view=(0, 0))
+    (label,) = drawing.labels
+    assert label.text == "d"
+    assert not outside(drawing)
+    assert abs(label.centre[0] - drawing.width / 2) < 40
+
+
+def test_an_angle_without_a_symbol_is_an_arc_alone() -> None:
+    named, bare = Scene(), Scene()
+    for scene, label in ((named, "θ"), (bare, "")):
+        scene.add_arc([0, 0, 0], [0, 0, 1], [1, 0, 0], 1.0, label)
+    assert [label.text for label in named.sketch().labels] == ["θ"]
+    assert not bare.sketch().labels
+    assert bare.svg().count('class="ar"') == named.svg().count('class="ar"') == 1
+
+
+def test_a_scene_without_directions_is_seen_as_usual() -> None:
+    scene = Scene()
+    scene.add_point([0, 0, 0], "P")
+    assert scene.best_view() == VIEW
+
+
 def test_the_usual_view_hides_no_axis_of_the_world() -> None:
     seen = View(*VIEW).project(np.eye(3))
     assert np.hypot(seen[:, 0], seen[:, 1]).min() > 0.6
@@ -291,6 +325,17 @@ def test_two_lines_however_they_lie(other: Axis, word: str) -> None:
     drawing = two_lines(Axis([0, 0, 0], [0, 0, 1]), other)
     assert word in drawing.alt
     assert not outside(drawing)
+
+
+def test_a_length_or_an_angle_of_zero_is_not_drawn() -> None:
+    pillar = Chain([Revolute(d=0.8, alpha=0.9)], "classic")
+    said = {label.text for label in link(pillar, 1, [0.7]).labels}
+    assert {"d_1", "θ_1", "α_1"} <= said
+    assert "a_1" not in said
+    arm = Chain([Revolute(d=0.8, a=1.1)], "classic")
+    words = [label.text for label in steps(arm, 1, [0.7]).labels]
+    assert {"θ_1", "d_1", "a_1"} <= set(words)
+    assert "α_1" not in words
 
 
 def test_steps_end_in_the_link() -> None:

@@ -5,7 +5,7 @@ from arms import EVERY_ROBOT, random_chain
 from numpy.testing import assert_allclose
 
 from dhlib import Chain, DHError, Prismatic, Revolute, robots
-from dhlib.symbolic import joint_symbols
+from dhlib.symbolic import joint_symbols, short_names
 
 CHAINS = {
     **EVERY_ROBOT,
@@ -40,6 +40,14 @@ def test_parallel_neighbours_only_appear_as_sums():
 
 def test_antiparallel_neighbours_appear_as_differences():
     assert {"C12m4", "S12m4"} <= terms(robots.cobra600())
+
+
+def test_an_angle_that_is_no_sum_of_joint_angles_keeps_its_name():
+    slide = Chain([Prismatic(theta=0.5, a=1), Revolute(a=1)], "classic")
+    assert sympy.cos(sympy.Symbol("theta2") + 0.5) in slide.symbolic(short=True).atoms(sympy.cos)
+    assert terms(slide) == {"d1", "theta2"}
+    theta1 = sympy.Symbol("theta1")
+    assert {str(short) for short in short_names(sympy.cos(2 * theta1) + sympy.sin(theta1)).values()} == {"S1"}
 
 
 def test_puma_in_the_form_of_the_books():

@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 import sympy
 
-from dhlib import Chain, DHError, robots
+from dhlib import Chain, DHError, Revolute, robots
 from dhlib.formula import parse_formula
 
 ROWS = [["q1", 100, 20, -90], ["q2", 0, 160, 0], ["q3", 28, 0, 90], ["q4", 250, 0, 0]]
@@ -50,6 +50,14 @@ def test_signs_and_offsets():
     assert (joints[2].kind, joints[2].sign, joints[2].offset, joints[2].theta) == ("P", -1, 0.1, 0.5)
 
 
+def test_a_cell_may_be_an_array_of_one_number():
+    row = ["q1", np.array(0.25), np.array(2), np.pi / 2]
+    (joint,) = Chain.from_table([row], convention="classic").joints
+    assert joint == Revolute(d=0.25, a=2, alpha=np.pi / 2)
+    with pytest.raises(DHError, match="d in row 1 is nan; it should be a finite number"):
+        Chain.from_table([["q1", np.array(np.nan), 0, 0]], convention="classic")
+
+
 def test_degrees_beside_symbols():
     joints = Chain.from_table([["q1 + 90", 0, 1, "-90"]], convention="classic", degrees=True).joints
     assert joints[0].offset == pytest.approx(np.pi / 2)
@@ -82,7 +90,8 @@ def test_mistakes_are_said(rows, options, words):
 
 
 @pytest.mark.parametrize(
-    ("text", "value"), [("pi/2", np.pi / 2), ("−π", -np.pi), ("-(1+2)*3/4", -2.25), ("1e-3", 1e-3), (" 2 ", 2)]
+    ("text", "value"),
+    [("pi/2", np.pi / 2), ("−π", -np.pi), ("-(1+2)*3/4", -2.25), ("1e-3", 1e-3), (" 2 ", 2), ("+pi", np.pi)],
 )
 def test_formulas(text, value):
     assert parse_formula(text) == pytest.approx(value)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from dhlib import DHError, Rx, Ry, Rz, Tx, Ty, Tz, inverse
-from dhlib.scalars import has_symbols, is_symbolic, quarter_turns, read_array, to_float
+from dhlib.scalars import cos_sin, has_symbols, is_symbolic, quarter_turns, read_array, read_scalar, to_float
 from dhlib.transforms import pose_fault, read_pose
 
 ROTATIONS = {"x": Rx, "y": Ry, "z": Rz}
@@ -82,6 +82,18 @@ def test_no_number_is_refused(transform, wrong):
 def test_numbers_of_any_kind_are_read():
     lengths = np.array([1, Fraction(1, 2), np.float32(0.25)], dtype=object)
     assert_array_equal(Tx(lengths)[:, 0, 3], [1, 0.5, 0.25])
+
+
+def test_an_array_without_axes_is_one_number():
+    assert repr(read_scalar(np.array(0.5), "a")) == "0.5"
+    with pytest.raises(DHError, match="a is nan; it should be a finite number"):
+        read_scalar(np.array(np.nan), "a")
+
+
+@pytest.mark.parametrize("one", [1, np.int64(1), np.float64(1.0)])
+def test_cosine_and_sine_of_a_number_are_numbers_whatever_its_type(one):
+    assert cos_sin(one) == cos_sin(1.0)
+    assert cos_sin(one * 0) == (1.0, 0.0)
 
 
 @pytest.mark.parametrize(("letters", "end"), [(3, "'xxx'"), (200, "x...")])
