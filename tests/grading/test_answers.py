@@ -1,6 +1,7 @@
 """Reading answers: every right form is read, everything else becomes a fault, and nothing raises."""
 
 import json
+import math
 import re
 from decimal import Decimal
 from fractions import Fraction
@@ -95,6 +96,7 @@ def test_one_number(value):
         (FORMULA, "cos(theta1)", "text"),
         (FORMULA, sp.Function("f")(t1), "no_value"),
         (FORMULA, sp.I * t1, "complex"),
+        (FORMULA, t1 + sp.nan, "nan"),
         (FORMULA, lambda q: q, "function"),
         (FORMULA, sp.Add(*((t1 + k) ** 2 for k in range(8_000))), "long"),
         (FUNCTION, 3, "no_function"),
@@ -107,6 +109,9 @@ def test_one_number(value):
         (TABLE, "q1 0 0 0", "text"),
         (TABLE, [[..., 0, 0, 0]], "missing"),
         (TABLE, [[float("nan"), 0, 0, 0]], "nan"),
+        (TABLE, {"theta": [0, 1], "d": [0]}, "ragged"),
+        (TABLE, [[0, 0, 0, 0]] * 1000, "size"),
+        (TABLE, [[0] * 1000], "size"),
     ],
 )  # fmt: skip
 def test_what_is_no_answer_has_a_fault_and_a_sentence(request_, value, fault):
@@ -149,6 +154,16 @@ def test_a_formula_counts_by_its_values(value):
 
 def test_where_a_formula_has_no_value_there_is_none():
     assert read_answer(FORMULA, 1 / (t1 - 0.5)) == {"values": [None, 2.0]}
+    assert read_answer(FORMULA, 10 ** (60 * (t1 - 0.5))) == {"values": [1.0, None]}
+
+
+def test_a_formula_with_a_function_that_numpy_does_not_have_counts_by_its_values():
+    assert read_answer(FORMULA, sp.erf(t1))["values"] == pytest.approx([math.erf(0.5), math.erf(1.0)])
+
+
+def test_a_shape_of_many_dimensions_is_named():
+    words = sentence(read_answer(MATRIX, np.zeros((2, 2, 2, 2))), "A1", "a matrix")
+    assert words == "A1 has shape 2 × 2 × 2 × 2; a matrix is asked for."
 
 
 @pytest.mark.parametrize("value", [complex("nan"), complex("inf"), complex("nanj"), complex("infj"), 1e300 + 0j])

@@ -19,7 +19,9 @@ from dhlib.grading.course import assign as assigning
 from dhlib.grading.course.keys import make_key, read_key
 from dhlib.grading.course.papers import check_tag, read_tag
 from dhlib.grading.course.roster import read_roster
+from dhlib.grading.exercise import Part
 from dhlib.grading.formal import form_of
+from dhlib.grading.forms import Numbers
 from dhlib.grading.grade import grade_notebook
 
 ROOT = Path(__file__).parents[2]
@@ -314,6 +316,7 @@ Q = np.deg2rad([30, -50, 70, 20])
         ("frames", [np.diag([1, 1, -1, 1])] * 5, "Frame 0: The determinant"),
         ("frames", [np.eye(4), robots.quickshot("modified").A(2, Q), *[np.eye(4)] * 3], "DH1"),
         ("table", [[0, 1, 2, 3]], "It has 1 row; the arm has 4 joints"),
+        ("table", robots.quickshot("modified"), "is in the modified convention; asked for is a classic table."),
         ("table", [[0, 100, 20, -90], [0, 0, 160, 0], [0, 28, 0, 90], [0, 250, 0, 0]], "radians"),
         ("table", [[f"q{i}", "d", 20, 0] for i in (1, 2, 3, 4)], "no other symbol"),
     ],
@@ -347,6 +350,12 @@ def test_a_right_form_says_nothing_of_the_answer(forms, part, answer, capsys):
     said = capsys.readouterr().out
     assert said.startswith(f"{part}: the form is right, ")
     assert said.endswith("The course will say whether the answer is.\n")
+
+
+def test_a_matrix_that_is_no_pose_has_a_right_form_where_none_is_asked_for(capsys):
+    twice = Part("M", "M", 1, Numbers(lambda arm, q: 2 * arm.fk(q), at=(0.3, 0.5)), arm=robots.planar(2))
+    form_checker("own", {"M": form_of(twice)})("M", np.full((4, 4), 7.0))
+    assert capsys.readouterr().out.startswith("M: the form is right")
 
 
 def test_every_solution_has_the_right_form(every, results, capsys):

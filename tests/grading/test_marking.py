@@ -8,13 +8,13 @@ import pandas as pd
 import pytest
 import sympy as sp
 
-from dhlib import Chain, Revolute, Rz, robots
+from dhlib import Chain, Revolute, Rz, Tz, robots
 from dhlib.errors import DHError
 from dhlib.grading import checker, form_checker, page
 from dhlib.grading.answers import read_answer
 from dhlib.grading.asking import number, reasoned
 from dhlib.grading.exercise import Exercise, Follows, Part, Trap, load_exercise
-from dhlib.grading.forms import Choice, Function, Numbers, Valued
+from dhlib.grading.forms import Choice, Function, Numbers, Reason, Valued
 from dhlib.grading.marking import Marker, mark
 
 pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass:PendingDeprecationWarning")
@@ -233,6 +233,17 @@ def test_the_page_is_told_what_the_notebook_is_told(solved):
     assert page.check(names | {"check": 3}, "A1") == {"passed": False, "says": page.GONE, "points": None}
 
 
+def test_the_page_does_not_punish_an_error_that_follows(exercise, solved):
+    links = {name: solved[name] for name in ("A1", "A2", "A3", "A4")} | {"A2": solved["A2"] @ Rz(0.3)}
+    product = links["A1"] @ links["A2"] @ links["A3"] @ links["A4"]
+    names = {"check": checker("quickshot"), **links, "T4": product, "X": solved["Z"] @ product @ solved["E"]}
+    told = {part: page.check(names, part) for part in ("X", "T4", "A2")}
+    assert [told[part]["points"] for part in ("X", "T4")] == [exercise.part(part).points for part in ("X", "T4")]
+    assert "A2" in told["T4"]["says"]
+    assert not told["A2"]["passed"]
+    assert page.check({**names, "A2": solved["A2"]}, "X")["points"] == 0
+
+
 def test_the_page_of_a_closed_course_is_told_of_the_form_alone(solved):
     forms = {part: {"form": "numbers", "shape": [4, 4]} for part in ("A1", "A2", "A3")}
     names = {"check": form_checker("quickshot", forms), "A1": np.eye(4), "A2": np.eye(3)}
@@ -276,6 +287,15 @@ def test_a_forged_reading_earns_nothing_and_breaks_nothing(every, reading):
         assert len(got.message) < 2_000
 
 
+@pytest.mark.parametrize(("lost", "right"), [(2, True), (12, False), (24, False)])
+def test_a_formula_may_lack_a_value_at_a_few_points_only(exercise, lost, right):
+    part = exercise.part("A1_sym")
+    values = part.asks.values(part.chain).tolist()
+    assert len(values) == 24
+    values[:lost] = [[[None] * 4] * 4] * lost
+    assert mark(part, {"values": values}).passed == right
+
+
 def test_a_part_that_is_not_there_is_told_which_are(exercise):
     with pytest.raises(DHError, match="its parts are frames, table, A1"):
         Marker(exercise).mark("B7", {})
@@ -304,6 +324,13 @@ def test_a_part_can_only_follow_from_earlier_ones(arm):
     part = Part("A", "A", 1, Choice({"x": "yes"}, "x"), follows=Follows(["B"], lambda b: b))
     with pytest.raises(DHError, match="no earlier part"):
         Exercise("e", "E", arm, [part])
+
+
+def test_a_choice_without_its_right_option_or_a_reason_without_words_is_refused():
+    with pytest.raises(ValueError, match=r"the right option 'z' is not among \['x', 'y'\]"):
+        Choice({"x": "yes", "y": "no"}, "z")
+    with pytest.raises(ValueError, match="a reason that does not hold should say why"):
+        Reason(holds=False)
 
 
 @pytest.mark.parametrize("name", ["../secret", "nothing", "", "A", 3])
@@ -456,6 +483,22 @@ def test_a_function_that_is_right_now_and_then_is_told_so():
     assert f"In {sum(right)} of {len(right)} calls it is right" in got.message
 
 
+def test_a_function_that_fails_once_for_each_number_is_told_how_often_it_is_right(judge, arm):
+    seen = []
+
+    def right_at_first(i, q):
+        seen.append(i)
+        return arm.A(i, q) if seen.count(i) == 1 else np.eye(4)
+
+    assert "In 4 of 8 calls it is right, in the others it is not." in judge("link", right_at_first).message
+
+
+def test_a_single_number_of_the_other_sign_is_told_so():
+    part = Part("x", "X", 1, Numbers(lambda arm, q: 7.5, shape=(), at=(0.3, 0.5)), arm=robots.planar(2))
+    assert mark(part, {"values": [-7.5]}).message == "The value is right but for its sign."
+    assert mark(part, {"values": [7.0]}).message == "The value differs from the right one."
+
+
 def test_entries_are_named_in_the_plural():
     part = load_exercise("puma560").part("p")
     got = mark(part, read_answer(part.asks.request(), [0, 0, sp.Symbol("S1")]))
@@ -484,3 +527,15 @@ def test_how_many_frames_there_should_be_is_said(judge, count, says):
 def test_frames_of_another_shape_are_not_counted(judge):
     """Negative control."""
     assert "The frames are" not in judge("frames", [np.eye(3)] * 5).message
+
+
+@pytest.mark.parametrize(
+    ("k", "moved", "words"),
+    [(0, Rz(1.0) @ Tz(5.0), "frame 0 is not the one given."), (4, Tz(5.0), "the origin of frame 4 is not where")],
+)
+def test_frames_that_obey_and_stand_at_another_end_are_nearly_right(judge, arm, k, moved, words):
+    frames = arm.frames(np.zeros(4))
+    frames[k] = frames[k] @ moved
+    got = judge("frames", frames)
+    assert got.message.startswith(f"Every link obeys DH1 and DH2, but {words}")
+    assert (got.verdict, got.points) == ("nearly", 0.75 * got.out_of)

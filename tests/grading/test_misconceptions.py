@@ -8,12 +8,12 @@ import pytest
 import sympy as sp
 from sampling import FULL, some
 
-from dhlib import Chain, Prismatic, Revolute, robots
+from dhlib import Chain, Prismatic, Revolute, inverse, robots
 from dhlib.grading.course.variants import Variants
 from dhlib.grading.diagnosis import Case, Tally, as_row, cases, other_chains, read, wrong_readings
 from dhlib.grading.diagnosis import main as diagnosis
-from dhlib.grading.exercise import load_exercise
-from dhlib.grading.forms import Choice, Valued
+from dhlib.grading.exercise import Part, load_exercise
+from dhlib.grading.forms import Choice, Numbers, Valued
 from dhlib.grading.marking import mark
 from dhlib.grading.marks import Mark
 from dhlib.grading.misconceptions import KNOWN, _clause, retellings, told_frames
@@ -314,3 +314,11 @@ def test_frames_of_the_other_convention_are_said_to_stand_on_its_axes(asked, wor
     slip, _ = next(iter(told_frames(robots.quickshot(), asked)))
     assert slip.misconception.key == "convention"
     assert words in slip.says
+
+
+def test_a_pose_seen_from_its_other_end_is_told_by_the_same_slips():
+    arm, q = robots.planar(2), (0.3, 0.5)
+    back = Part("back", "Back", 1, Numbers(lambda arm, q: arm.T(2, 0, q) @ arm.T(1, 1, q), at=q), arm=arm)
+    assert mark(back, {"values": [arm.T(2, 0, q).tolist()]}).passed
+    turned = inverse(arm.A(2, q) @ arm.A(1, q))
+    assert mark(back, {"values": [turned.tolist()]}).misconception == "reverse"

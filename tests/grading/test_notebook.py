@@ -69,6 +69,12 @@ def test_roles_that_were_lost_are_found_again():
     assert "def B():\n    pass" in merged
 
 
+def test_a_cell_that_answers_and_checks_at_once_is_the_answer():
+    both = Cell('A = 1\ncheck("A", A)')
+    assert recover_roles([both]) == [Cell(both.source, True, "answer", "A")]
+    assert sources([both])[1:3] == [both.source, 'check("A", A)']
+
+
 def write(path, content):
     path.write_text(content if isinstance(content, str) else json.dumps(content), encoding="utf-8")
     return path
@@ -170,6 +176,8 @@ def test_more_than_a_notebook_is_refused(tmp_path):
     many = {"cells": [{"cell_type": "code", "source": "x"}] * 2001}
     with pytest.raises(DHError, match="more than 2000 cells"):
         parse_notebook(json.dumps(many).encode(), "x.ipynb")
+    with pytest.raises(DHError, match="more than 2000 cells"):
+        parse_notebook(json.dumps({"cells": many["cells"] * 2}).encode()[:-20], "x.ipynb")  # cut off after that
     with pytest.raises(DHError, match="larger than 50 MB"):
         parse_notebook(b" " * 50_000_001, "x.ipynb")
 

@@ -140,3 +140,17 @@ def test_a_figure_without_words_is_refused():
 def test_what_is_in_quotes_and_brackets_comes_back():
     told = 'The "arm" <of> {0} & its [axes]'
     assert read_cell(as_cell(Scene().sketch("Caption", told)))[1:] == (told, "Caption")
+
+
+def test_the_metal_of_an_arm_can_be_left_out():
+    arm = robots.quickshot()
+    drawn = {
+        show: described(arm, "An arm", "An arm.", lengths={"a_2": "upper_arm"}, show=show)
+        for show in (("links", "joints"), ("links",), ("joints",), ())
+    }
+    assert len({tuple(label.text for label in drawing.labels) for drawing in drawn.values()}) == 1
+    joints = [drawing.body.count('class="jo"') for drawing in drawn.values()]
+    assert joints == [4, 0, 4, 0]
+    pieces = [drawing.body.count('class="body b"') for drawing in drawn.values()]
+    assert pieces[0] > pieces[2]
+    assert pieces[1] > pieces[3] == 0

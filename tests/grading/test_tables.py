@@ -93,6 +93,9 @@ def test_what_the_library_places_itself_is_right(judge, arm):
         (with_cells((2, "a", 150)), 0, "", "axes 2 and 3"),
         ([[x, 0, 100, 0] for x in t], 0, "", "axes 1 and 2"),
         (RIGHT[:3], 0, "", "3 rows; the arm has 4 joints"),
+        ([[r[0], r[1], r[2] - 10, r[3] * 180 / pi] for r in RIGHT], 0, "degrees", "with degrees the arm would not be"),
+        (Chain([joint.replace(a=7) for joint in robots.quickshot("modified").joints], "modified"), 0, "convention",
+         "This chain is in the modified convention; asked for is a classic table."),
     ],
 )  # fmt: skip
 def test_the_ladder(judge, table, points, key, words):

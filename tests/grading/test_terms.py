@@ -5,8 +5,9 @@ import pytest
 import sympy as sp
 from sympy import cos, sin
 
+from dhlib import robots
 from dhlib.grading.answers import read_answer
-from dhlib.grading.exercise import load_exercise
+from dhlib.grading.exercise import Part, load_exercise
 from dhlib.grading.forms import Formula
 from dhlib.grading.marking import mark
 from dhlib.grading.terms import SAYS, slip_in_a_term, taken_apart
@@ -100,3 +101,36 @@ def test_every_formula_can_be_taken_apart_and_a_sign_in_it_is_told(every):
 
 def test_sentences_hold_no_formula():
     assert all(says.count("{entry}") == 1 for says in SAYS.values())
+
+
+def formula(quantity, n, shape=()):
+    symbols = [f"theta{i}" for i in range(1, n + 1)]
+    return Part("f", "F", 1, Formula(quantity, shape=shape, symbols=symbols), arm=robots.planar(n))
+
+
+def judged(part, answer):
+    return mark(part, read_answer(part.asks.request(), answer)).message
+
+
+def test_the_entries_of_a_small_matrix_are_named_by_row_and_column():
+    part = formula(lambda arm, q: arm.fk(q)[:2, :2], 2, (2, 2))
+    right = sp.Matrix([[cos(t1 + t2), -sin(t1 + t2)], [sin(t1 + t2), cos(t1 + t2)]])
+    assert mark(part, read_answer(part.asks.request(), right)).passed
+    right[0, 1] = -right[0, 1]
+    assert judged(part, right) == "Entry (1, 2) is right but for its sign."
+
+
+def test_no_slip_is_looked_for_in_what_is_no_sum_of_products():
+    part = formula(lambda arm, q: q[0] ** 2 + q[1], 2)
+    assert mark(part, read_answer(part.asks.request(), t1**2 + t2)).passed
+    assert list(taken_apart(part, part.asks)) == []
+    assert "term" not in judged(part, t1**2 - t2)
+
+
+@pytest.mark.parametrize(("n", "kind"), [(7, "In it all is right but for the sign of one term."), (8, "")])
+def test_no_slip_is_looked_for_in_a_formula_of_very_many_angles(n, kind):
+    angles = sp.symbols(f"theta1:{n + 1}")
+    part = formula(lambda arm, q: np.cos(q).sum(), n)
+    assert mark(part, read_answer(part.asks.request(), sum(map(cos, angles)))).passed
+    message = judged(part, sum(map(cos, angles[1:])) - cos(t1))
+    assert message == kind if kind else "term" not in message
