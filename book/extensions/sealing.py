@@ -27,7 +27,7 @@ from typing import Any
 
 from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 
-ROUNDS = 100_000
+ROUNDS = 20_000
 CELL = 8.0
 """Width of a cell, in tolerances."""
 CLEAR = 1.5
