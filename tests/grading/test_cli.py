@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +16,7 @@ from dhlib.grading.batch.intake import collect
 from dhlib.grading.batch.progress import Progress
 from dhlib.grading.batch.run import Summary
 from dhlib.grading.reports.cells import safe
+from dhlib.grading.wall.limits import UNSAFE
 
 ROOT = Path(__file__).parents[2]
 
@@ -120,6 +122,33 @@ def test_whoever_stops_it_is_told_that_nothing_is_lost(tmp_path, monkeypatch, ca
     monkeypatch.setattr(run, "grade_class", stopped)
     assert main(["grade", str(tmp_path), "--out", str(tmp_path / "out"), "--shard", "2/5"]) == 130
     assert "the same command goes on where it was" in capsys.readouterr().err
+
+
+def test_who_handed_nothing_in_is_counted_and_the_missing_wall_is_said(tmp_path, capsys):
+    (tmp_path / "class" / "ada").mkdir(parents=True)
+    (tmp_path / "class" / "ada" / "x.ipynb").write_bytes(b"%PDF-1.7")
+    (tmp_path / "roster.csv").write_text("id,name\nada,Ada Lovelace\nbob,Bob\ncarl,Carl\n", "utf-8")
+    command = ["grade", str(tmp_path / "class"), "--out", str(tmp_path / "out"), "--workers", "1"]
+    assert main([*command, "--roster", str(tmp_path / "roster.csv"), "--unsafe-no-sandbox"]) == 1
+    said = capsys.readouterr()
+    assert "2 of the 3 on the roster handed nothing in." in said.out
+    assert UNSAFE in said.err
+
+
+def test_a_certificate_that_is_not_there_is_named(tmp_path, capsys):
+    (tmp_path / "ca.pem").write_text("x")
+    command = ["grade", str(tmp_path), "--out", str(tmp_path / "out"), "--scheduler", "tls://example.org:8786"]
+    certificates = ["--tls-ca", str(tmp_path / "ca.pem"), "--tls-key", str(tmp_path / "key.pem")]
+    assert main([*command, *certificates]) == 2
+    assert f"there is no file {tmp_path / 'key.pem'}." in capsys.readouterr().err
+    assert main([*command[:-1], "tcp://example.org:8786", *certificates[:2]]) == 2
+    assert "tls://" in capsys.readouterr().err
+
+
+def test_where_nothing_says_which_processors_are_free_all_are_used(monkeypatch):
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(os, "cpu_count", lambda: 7)
+    assert command.cores() == 7
 
 
 @pytest.mark.parametrize(

@@ -143,6 +143,38 @@ def test_clones_of_github_classroom(class_):
     assert [h.submitted for h in found] == [None, None]  # the dates are those of the download
 
 
+def test_a_clone_alone_is_told_by_the_name_of_the_exercise_or_not_at_all(class_):
+    for clone, student in (("quickshot-ada", "ada"), ("one-link-ada", "ada"), ("hw-1-ada", "hw-1-ada")):
+        folder = class_(f"{clone}/quickshot.ipynb", f"{clone}/.git/config", "bob/quickshot.ipynb", root=clone)
+        assert sorted(who(folder).values()) == sorted(["bob", student])
+
+
+def test_a_name_that_is_too_long_for_a_platform_is_that_of_a_folder(tmp_path):
+    long = "A" * 600 + "_1815_assignsubmission_file_"
+    source = packed({f"{long}/quickshot.ipynb": NOTEBOOK, "bob/quickshot.ipynb": NOTEBOOK}, tmp_path / "class.zip")
+    assert sorted(who(source).values()) == [long, "bob"]
+
+
+def test_an_archive_may_list_its_folders(tmp_path):
+    names = {
+        "ada/": b"",
+        "ada/quickshot.ipynb": NOTEBOOK,
+        "bob/quickshot.ipynb": NOTEBOOK,
+        "dora/": b"",
+        "../eve/": b"",
+    }
+    intake = collect([packed(names, tmp_path / "class.zip")], EXERCISES)
+    assert [h.source for h in intake.found] == ["ada/quickshot.ipynb", "bob/quickshot.ipynb"]
+    assert sentences(intake) == {"dora": "The folder is empty."}
+
+
+def test_a_file_that_was_named_itself_is_what_was_handed_in(class_):
+    folder = class_("essay.pdf", "notes.txt")
+    assert who(folder / "essay.pdf") == {"essay.pdf": "essay.pdf"}
+    with pytest.raises(DHError, match="no notebook"):
+        collect([folder], EXERCISES)
+
+
 def test_hidden_and_spare_files_are_left_out(class_):
     folder = class_(
         "ada/quickshot.ipynb",
@@ -154,6 +186,10 @@ def test_hidden_and_spare_files_are_left_out(class_):
         "bob/env/pyvenv.cfg",
     )
     assert list(who(folder)) == ["ada/quickshot.ipynb", "bob/quickshot.ipynb"]
+    spare = ("__MACOSX/._quickshot.ipynb", ".ipynb_checkpoints/quickshot.ipynb", "work/quickshot.ipynb")
+    (folder / "carl").mkdir()
+    packed(dict.fromkeys(spare, NOTEBOOK), folder / "carl" / "work.zip")
+    assert list(who(folder))[2:] == ["carl/work.zip/work/quickshot.ipynb"]
 
 
 def test_whoever_handed_in_something_else_is_not_lost(class_):
@@ -203,6 +239,34 @@ def test_a_file_that_becomes_a_link_or_a_pipe_is_not_read(class_, tmp_path):
             reader.read(bob.entry)
 
 
+def test_a_file_that_goes_or_grows_before_it_is_read_is_named(class_):
+    folder = class_("ada/quickshot.ipynb", "bob/quickshot.ipynb")
+    ada, bob = collect([folder], EXERCISES).found
+    ada.entry.path.unlink()
+    with bob.entry.path.open("wb") as file:
+        file.truncate(50_000_001)
+    with Reader() as reader:
+        with pytest.raises(DHError, match=r"quickshot\.ipynb cannot be opened: No such file or directory\."):
+            reader.read(ada.entry)
+        with pytest.raises(DHError, match="larger than 50 MB; clear its outputs"):
+            reader.read(bob.entry)
+
+
+def test_a_pipe_among_the_files_is_left_out(class_):
+    folder = class_("ada/quickshot.ipynb")
+    os.mkfifo(folder / "ada" / "pipe.ipynb")
+    assert list(who(folder)) == ["ada/quickshot.ipynb"]
+
+
+def test_an_archive_that_is_gone_or_of_which_an_entry_leads_out_is_not_read(tmp_path):
+    with pytest.raises(DHError, match=r"gone\.zip cannot be opened: No such file or directory\."):
+        archives.Archive(tmp_path / "gone.zip", "gone.zip")
+    archive = archives.Archive(packed({"../quickshot.ipynb": NOTEBOOK, "a.ipynb": NOTEBOOK}), "work.zip")
+    with pytest.raises(DHError, match="outside of its folder"):
+        archive.read(0)
+    assert archive.read(1) == NOTEBOOK
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems refuse such names")
 def test_names_that_are_no_text_are_written_out(tmp_path):
     folder = os.fsencode(tmp_path / "class")
@@ -235,6 +299,8 @@ def test_a_platform_inside_a_students_archive_says_nothing(class_):
     (folder / "eve").mkdir()
     packed({"Ada_1_assignsubmission_file_/quickshot.ipynb": NOTEBOOK}, folder / "eve" / "work.zip")
     assert list(who(folder).values()) == ["bob", "eve"]
+    packed({"Ada_1_assignsubmission_file_/quickshot.ipynb": NOTEBOOK}, folder / "mallory.zip")
+    assert list(who(folder).values()) == ["bob", "eve", "mallory"]
 
 
 def test_the_download_of_a_class_among_others_is_said(class_):
@@ -248,6 +314,9 @@ def test_the_download_of_a_class_among_others_is_said(class_):
 def test_the_same_path_in_two_sources_is_told_apart(class_):
     first, second = class_("ada/quickshot.ipynb", root="week1"), class_("ada/quickshot.ipynb", root="week2")
     assert who(first, second) == {"ada/quickshot.ipynb": "ada", "week2/ada/quickshot.ipynb": "ada"}
+    third = class_("ada/quickshot.ipynb", root="term2/week2")
+    (again,) = who(first, second, third).keys() - {"ada/quickshot.ipynb", "week2/ada/quickshot.ipynb"}
+    assert again == f"{third}/ada/quickshot.ipynb (2)"
 
 
 def test_the_roster_says_who_is_who(class_):
@@ -310,6 +379,11 @@ def hostile(kind):
             at = data.rfind(b"PK\x01\x02")
             data[at + 24 : at + 28] = (10).to_bytes(4, "little")
             return bytes(data)
+        case "lies about its list":
+            data = bytearray(packed({"quickshot.ipynb": NOTEBOOK}))
+            at = data.rfind(b"PK\x05\x06")
+            data[at + 12 : at + 16] = (46 * 100_001).to_bytes(4, "little")
+            return bytes(data)
         case "archives in archives":
             data = packed({"quickshot.ipynb": NOTEBOOK})
             for k in range(4):
@@ -334,6 +408,7 @@ def hostile(kind):
         ("damaged", "damaged"),
         ("cut", "damaged, or no ZIP file"),
         ("lies about its size", "damaged"),
+        ("lies about its list", "more than 100,000 entries"),
         ("archives in archives", "an archive in an archive"),
         ("no archive", "damaged, or no ZIP file"),
     ],

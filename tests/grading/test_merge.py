@@ -67,6 +67,12 @@ def test_who_is_claimed_twice_shows_when_all_are_together(parts, tmp_path):
         assert any("are all said to be of ada" in problem.what for problem in store.problems())
 
 
+def test_results_may_be_merged_into_one_of_the_parts(parts):
+    assert merge(parts, parts[0]) == 1
+    with Store(parts[0]) as store:
+        assert [s.source for s in store.submissions()] == [ADA.source, BOB.source]
+
+
 def test_a_part_that_is_none_changes_nothing(parts, tmp_path):
     with pytest.raises(DHError, match="no results in"):
         merge([*parts, tmp_path], tmp_path / "all")
@@ -78,3 +84,6 @@ def test_the_command(parts, tmp_path, capsys):
     assert "2 taken, 2 in all" in capsys.readouterr().out
     assert (tmp_path / "all" / "grades.csv").is_file()
     assert main(["merge", str(tmp_path / "nothing"), "--out", str(tmp_path / "all")]) == 2
+    (tmp_path / "file").write_text("x")
+    assert main(["merge", *map(str, parts), "--out", str(tmp_path / "file")]) == 2
+    assert "file is a file; --out names a folder." in capsys.readouterr().err

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -239,6 +240,42 @@ def test_the_work_of_somebody_who_handed_in_nothing_is_told_by_the_roster(hand_i
     problems = run(roster=lambda names: Carl() if "carl" in names else None)[2]
     (problem,) = (problem for problem in problems if "roster" not in problem.what)
     assert problem.what == "It says that it is of s3, but it was found where ada's work is."
+
+
+def test_who_says_that_it_is_themselves_is_not_listed(hand_in, run):
+    hand_in("ada/tiny.ipynb", "a", student="Ada ")
+    assert run()[2] == []
+
+
+def test_two_who_say_that_they_are_the_same_stranger_are_listed(hand_in, run):
+    hand_in("ada/tiny.ipynb", "a", student="zoe")
+    hand_in("bob/tiny.ipynb", "a", student="zoe")
+    hand_in("carl/tiny.ipynb", "a", student="dora")
+    _, _, problems = run()
+    assert {problem.source: problem.what for problem in problems} == {
+        "ada/tiny.ipynb": "It says that it is of 'zoe', and so do notebooks of bob.",
+        "bob/tiny.ipynb": "It says that it is of 'zoe', and so do notebooks of ada.",
+    }
+
+
+def test_whom_the_metadata_told_is_known_when_the_run_is_repeated(hand_in, run):
+    hand_in("tiny.ipynb", "a", student="carl")
+    first = run()[1]
+    graded, again, _ = run()
+    assert graded == []
+    assert again == first
+    assert (again[0].student, again[0].certainty) == ("carl", Certainty.METADATA)
+
+
+def test_what_cannot_be_unpacked_is_unreadable_and_says_why(hand_in, run, tmp_path):
+    hand_in("bob/tiny.ipynb", "a")
+    (tmp_path / "class" / "ada").mkdir()
+    with zipfile.ZipFile(tmp_path / "class" / "ada" / "work.zip", "w") as archive:
+        archive.writestr("../tiny.ipynb", "x")
+    _, submissions, _ = run()
+    ada = next(submission for submission in submissions if submission.student == "ada")
+    assert (ada.status, ada.points) == ("unreadable", 0)
+    assert "outside of its folder" in ada.message
 
 
 def test_two_places_that_claim_one_student_are_listed_and_both_kept(hand_in, run):

@@ -54,6 +54,23 @@ def test_what_was_kept_comes_back(store, tmp_path):
         assert [(e.what, e.student, e.details) for e in again.events()] == [("adjusted", "1815", "one point more")]
 
 
+def test_a_submission_that_is_not_there_is_said(store):
+    number = store.add(ADA)
+    with pytest.raises(DHError, match=f"holds no submission {number + 1}"):
+        store.submission(number + 1)
+
+
+def test_what_is_known_already_is_not_put_on_record(store):
+    number = store.add(ADA)
+    store.identify(store.submission(number))
+    store.identify(dataclasses.replace(store.submission(number), name="Ada King"))
+    assert store.submission(number).name == "Ada King"
+    assert store.events() == []
+    store.identify(dataclasses.replace(store.submission(number), student="s1"))
+    (event,) = store.events()
+    assert (event.what, event.student, event.details) == ("told anew", "s1", f"{ADA.source}: was 1815")
+
+
 def test_the_last_attempt_counts_in_whatever_order_they_are_graded(store):
     late = dataclasses.replace(ADA, source="b.ipynb", sha256="bb", submitted="2026-11-03T10:00:00+00:00")
     store.add(late)
