@@ -92,6 +92,13 @@ def test_a_urdf_is_read_as_its_joints_say(tmp_path: Path) -> None:
     assert np.abs(arm.fk(-q) - T).max() > 0.01  # negative control
 
 
+def test_a_joint_without_a_place_stands_where_the_one_before_does(tmp_path: Path) -> None:
+    for name, origin in (("said", '<origin xyz="0 0 0"/>'), ("left out", "")):
+        (tmp_path / name).write_text(URDF.replace('<origin xyz="0 0 0.3"/>', origin), "utf-8")
+    said, left_out = (read_robot(tmp_path / name) for name in ("said", "left out"))
+    assert np.array_equal(left_out.fk([0.4, -0.7, 0.15]), said.fk([0.4, -0.7, 0.15]))
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -108,6 +115,13 @@ def test_a_urdf_is_read_as_its_joints_say(tmp_path: Path) -> None:
 def test_a_robot_that_cannot_be_read_is_named(tmp_path: Path, text: str, words: str) -> None:
     (tmp_path / "r").write_text(text, "utf-8")
     with pytest.raises(DHError, match=words):
+        read_robot(tmp_path / "r")
+
+
+def test_a_file_that_is_too_large_for_a_robot_is_not_read(tmp_path: Path) -> None:
+    with (tmp_path / "r").open("wb") as file:
+        file.truncate(20_000_001)
+    with pytest.raises(DHError, match="r is larger than 20 MB, which is no robot"):
         read_robot(tmp_path / "r")
 
 

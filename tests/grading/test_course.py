@@ -1,10 +1,12 @@
 """The key, the class list, the notebooks of a class, and what `check` says in them."""
 
 import csv
+import io
 import json
 import os
 import stat
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,7 @@ from dhlib.errors import DHError
 from dhlib.grading import form_checker
 from dhlib.grading.check import CheckFailed
 from dhlib.grading.course import assign as assigning
+from dhlib.grading.course import worked
 from dhlib.grading.course.keys import make_key, read_key
 from dhlib.grading.course.papers import check_tag, read_tag
 from dhlib.grading.course.roster import read_roster
@@ -138,9 +141,14 @@ def test_a_column_can_be_named(tmp_path):
         read_roster(path, "Kode")
     with pytest.raises(DHError, match="cannot be opened"):
         read_roster(tmp_path / "none.csv")
-    (tmp_path / "binary.csv").write_bytes(b"id\n\x00\x81\x00")
-    with pytest.raises(DHError, match="is no text"):
-        read_roster(tmp_path / "binary.csv")
+    for data in (b"id\n\x00\x81\x00", b"id\nx\ny\x00\n"):
+        (tmp_path / "binary.csv").write_bytes(data)
+        with pytest.raises(DHError, match="is no text"):
+            read_roster(tmp_path / "binary.csv")
+    with (tmp_path / "large.csv").open("wb") as file:
+        file.truncate(20_000_001)
+    with pytest.raises(DHError, match=r"large\.csv is larger than 20 MB, which is no class list"):
+        read_roster(tmp_path / "large.csv")
 
 
 # The notebooks
@@ -185,6 +193,23 @@ def test_nothing_is_written_over_a_class(tmp_path, roster, key, capsys):
     assert run_assign(tmp_path, roster, key) == 2
     assert "nothing is written over" in capsys.readouterr().err
     assert {path.name: path.read_bytes() for path in (tmp_path / "out" / "hw1").iterdir()} == before
+
+
+def test_an_empty_folder_may_take_a_class(tmp_path, roster, key):
+    (tmp_path / "out" / "hw1").mkdir(parents=True)
+    assert run_assign(tmp_path, roster, key) == 0
+    assert len(list((tmp_path / "out" / "hw1").glob("*.ipynb"))) == 7
+
+
+def test_on_a_screen_there_is_a_bar_of_notebooks(tmp_path, roster, key, monkeypatch):
+    class Screen(io.StringIO):
+        def isatty(self):
+            return True
+
+    monkeypatch.setattr(sys, "stderr", screen := Screen())
+    assert run_assign(tmp_path, roster, key) == 0
+    assert "7/7" in screen.getvalue()
+    assert len(list((tmp_path / "out" / "hw1").glob("*.ipynb"))) == 7
 
 
 def test_never_half_a_class(tmp_path, roster, key, monkeypatch):
@@ -273,6 +298,34 @@ def test_a_solution_that_does_not_solve_is_refused(tmp_path, key, capsys):
     assert "does not solve the numbers of 'm1': " in capsys.readouterr().err
     assert not out.exists()
     assert main([*command, "--solutions", str(tmp_path / "none"), "--out", str(out)]) == 2
+    capsys.readouterr()
+    assert main(["solution", "quickshot", "--student", " ", "--key", str(key), "--out", str(out)]) == 2
+    assert "--student should be an ID of the class list." in capsys.readouterr().err
+
+
+# The outputs of a worked notebook
+
+
+def code(*sources):
+    cells = [{"cell_type": "code", "id": f"c{k}", "source": s, "metadata": {}, "outputs": [], "execution_count": None}
+             for k, s in enumerate(sources)]  # fmt: skip
+    return {"cells": cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
+
+
+@pytest.mark.notebooks
+def test_the_outputs_of_a_worked_notebook_are_stored_as_lines(tmp_path, capsys):
+    path = tmp_path / "n.ipynb"
+    write(path, json.dumps(code("print('a')\nprint('b')", "'x\\ny'.upper()", "raise KeyError('gone')")))
+    before = path.read_bytes()
+    assert worked.main([str(path)]) == 1
+    assert "n.ipynb: a cell stopped with KeyError: 'gone'" in capsys.readouterr().err
+    assert path.read_bytes() == before
+    write(path, json.dumps(code("print('a')\nprint('b')", "'x\\ny'.upper()")))
+    assert worked.main([str(path)]) == 0
+    assert capsys.readouterr().out == f"ran {path}\n"
+    printed, shown = (cell["outputs"][0] for cell in json.loads(path.read_text("utf-8"))["cells"])
+    assert printed["text"] == ["a\n", "b\n"]
+    assert shown["data"] == {"text/plain": ["'X\\nY'"]}
 
 
 # The check of the form

@@ -3,6 +3,7 @@
 import copy
 import json
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -195,6 +196,26 @@ def test_drift_is_reported_and_mended(tmp_path, capsys):
     changed = tmp_path / "quickshot.ipynb"
     changed.write_text(changed.read_text(encoding="utf-8").replace("A1 = ...", "A1 = 1"), encoding="utf-8")
     assert main([*folders, "--check"]) == 1
+
+
+def test_a_folder_without_solutions_is_said(tmp_path, capsys):
+    assert main(["--solutions", str(tmp_path), "--exercises", str(tmp_path)]) == 2
+    assert f"There is no notebook in {tmp_path}." in capsys.readouterr().err
+
+
+def test_what_is_given_in_a_solution_is_mended_too(tmp_path, capsys):
+    for suffix in (".py", ".ipynb"):
+        shutil.copy(ROOT / "exercises" / f"quickshot{suffix}", tmp_path)
+    (tmp_path / "solutions").mkdir()
+    stale = tmp_path / "solutions" / "quickshot.ipynb"
+    right = SOLUTION.read_text(encoding="utf-8")
+    assert '"upper_arm = 160' in right
+    stale.write_text(right.replace('"upper_arm = 160', '"upper_arm = 170'), encoding="utf-8")
+    folders = ["--solutions", str(stale.parent), "--exercises", str(tmp_path)]
+    assert main([*folders, "--check"]) == 1
+    assert str(stale) in capsys.readouterr().err
+    assert main(folders) == 0
+    assert stale.read_text(encoding="utf-8") == right
 
 
 def test_the_stored_outputs_of_the_solution_say_right(worked, every):

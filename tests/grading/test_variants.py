@@ -10,8 +10,9 @@ import pytest
 from sampling import FULL, some
 
 from dhlib.errors import DHError
+from dhlib.grading import asked
 from dhlib.grading.answers import read_answer
-from dhlib.grading.course.editions import HOW
+from dhlib.grading.course.editions import HOW, for_course
 from dhlib.grading.course.lots import Lots
 from dhlib.grading.course.papers import NotAssigned, as_metadata, check_tag, load_paper, make_tag, read_tag
 from dhlib.grading.course.variants import Variants, fill, load_variant
@@ -176,6 +177,12 @@ def test_what_is_drawn_is_written_down_here():
     assert Lots(KEY, "s1", "quickshot").some("height", range(1000), 4) == [91, 901, 602, 507]
 
 
+def test_more_than_there_are_cannot_be_drawn():
+    assert sorted(Lots(KEY, "s1", "x").some("die", range(6), 6)) == list(range(6))
+    with pytest.raises(ValueError, match="die: 7 are to be drawn out of 6"):
+        Lots(KEY, "s1", "x").some("die", range(6), 7)
+
+
 def test_draws_are_even():
     counts = np.bincount([Lots(KEY, f"s{k}", "x").one("die", range(6)) for k in range(3000)], minlength=6)
     assert np.sum((counts - 500) ** 2 / 500) < 20.5  # chi squared, five degrees of freedom, one in a thousand
@@ -203,6 +210,30 @@ def test_an_exercise_without_numbers_of_its_own_says_so(tmp_path):
     assert set(Variants("plain", tmp_path).of().given) == {HOW}
     with pytest.raises(DHError, match=r"has no numbers to draw: .*plain\.py should offer draw"):
         Variants("plain", tmp_path).of(KEY, "s1")
+
+
+def test_a_file_without_an_exercise_is_named(tmp_path):
+    (tmp_path / "empty.py").write_text("EXERCISE = 3\n")
+    with pytest.raises(DHError, match=r"empty\.py should end with EXERCISE = Exercise"):
+        Variants("empty", tmp_path)
+
+
+def test_a_notebook_whose_setup_makes_no_check_is_named(variants):
+    exercise = variants["quickshot"].of().exercise
+    notebook = load(ROOT / "exercises" / "quickshot.ipynb")
+    assert "form_checker" in json.dumps(for_course(notebook, exercise))
+    notebook["cells"] = [cell for cell in notebook["cells"] if cell["metadata"]["dh"]["role"] != "setup"]
+    with pytest.raises(DHError, match="quickshot: one setup cell should hold the lines"):
+        for_course(notebook, exercise)
+
+
+def test_a_class_larger_than_is_kept_is_asked_the_same_again(monkeypatch):
+    monkeypatch.setattr(asked, "MOST_KEPT", 1)
+    catalogue = asked.Catalogue(ROOT / "exercises", KEY)
+    first, other, again = (catalogue.asked("quickshot", student) for student in ("s1", "s2", "s1"))
+    assert first is not again
+    assert first.pristine == again.pristine != other.pristine
+    assert first.sha256 == again.sha256 == catalogue.sha256("quickshot") != asked.Catalogue().sha256("quickshot")
 
 
 def test_cells_and_sources_belong_together():
