@@ -1,5 +1,6 @@
 """What the instructor decides by hand, rules for late work, the audit trail, and being forgotten."""
 
+import sqlite3
 import subprocess
 import sys
 
@@ -101,6 +102,8 @@ def test_grading_again_loses_no_decision(class_of_three, rows):
         ([], "say what to change"),
         (["--list", "--revoke", "1"], "one thing at a time"),
         (["--student", "bob", "--exercise", "planar", "--bonus", "1", "--reason", "x"], "no exercise 'planar'"),
+        (["--student", "bob", "--exercise", "quickshot", "--bonus", "1", "--reason", "x"], None),
+        (["--student", "bob", "--bonus", "nan", "--reason", "x"], "--bonus should be a number"),
     ],
 )
 def test_mistakes_are_said_in_a_sentence(class_of_three, capsys, arguments, words):
@@ -111,6 +114,30 @@ def test_mistakes_are_said_in_a_sentence(class_of_three, capsys, arguments, word
         assert words in said
         assert said.startswith("dhlib: ")
         assert points(class_of_three) == {"ada": 1, "bob": 1, "cleo": 1}
+
+
+def test_who_or_what_may_be_meant_is_listed(class_of_three, rows, capsys):
+    with Store(class_of_three) as store:
+        store.add(submission("b2", "Bob", "Bob/2.ipynb", rows), rows)
+        store.add(submission("ada", "Ada Müller", "Ada/planar.ipynb", rows, exercise="planar"), rows)
+    bonus = ("--bonus", "1", "--reason", "x")
+    assert run(class_of_three, "adjust", "--student", "Bob", *bonus) == 2
+    assert "'Bob' may be b2 (Bob), bob (Bob): say which by the first of the two." in capsys.readouterr().err
+    assert run(class_of_three, "adjust", "--student", "ada", *bonus) == 2
+    assert "there are several exercises: planar, quickshot. Say which with --exercise NAME." in capsys.readouterr().err
+    assert run(class_of_three, "adjust", "--student", "ada", "--exercise", "quickshot", *bonus) == 0
+    with Store(class_of_three) as store:
+        gained = {(record.student, record.exercise): record.points for record in read_results(store)}
+    assert (gained["ada", "quickshot"], gained["ada", "planar"]) == (2, 1)
+
+
+@pytest.mark.parametrize(
+    ("option", "words"), [("--exercises", "--exercises names the folder that holds NAME.py"), ("--key", "dhlib key")]
+)
+def test_a_folder_or_a_key_that_is_not_there_is_said_and_not_kept(class_of_three, capsys, option, words):
+    assert run(class_of_three, "report", option, "nowhere") == 2
+    assert words in capsys.readouterr().err
+    assert run(class_of_three, "report") == 0
 
 
 @pytest.mark.parametrize("command", ["report", "adjust", "export"])
@@ -286,6 +313,49 @@ def test_forgetting_one_leaves_namesakes_alone(class_of_three, rows):
     run(class_of_three, "forget", "li", "--yes")
     with Store(class_of_three) as store:
         assert "Linda, Lisa and Bob" in [event.details for event in store.events()]
+
+
+def test_decisions_about_time_are_listed_with_their_numbers(class_of_three, capsys):
+    run(class_of_three, "adjust", "--due", "2026-11-20T20:00+00:00", "--late", "1%/day")
+    run(class_of_three, "adjust", "--student", "bob", "--due", "2026-11-27T20:00+00:00", "--reason", "was ill")
+    run(class_of_three, "adjust", "--revoke-rule", "1")
+    capsys.readouterr()
+    assert run(class_of_three, "adjust", "--list") == 0
+    first, second = capsys.readouterr().out.splitlines()
+    assert first.startswith("rule 1  all, all exercises: due 2026-11-20T20:00:00+00:00; 1 %")
+    assert "; revoked " in first
+    assert second.startswith("rule 2  bob, all exercises: due 2026-11-27T20:00:00+00:00. was ill  (")
+    assert second.endswith("; holds)")
+
+
+def test_who_is_forgotten_before_any_report_gets_none(tmp_path, rows):
+    with Store(tmp_path, create=True) as store:
+        store.add(submission("ada", "Ada", "Ada/x.ipynb", rows), rows)
+        store.add(submission("bob", "Bob", "Bob/x.ipynb", rows), rows)
+    assert main(["forget", str(tmp_path), "ada", "--yes"]) == 0
+    assert points(tmp_path) == {"bob": 1}
+    assert not (tmp_path / "grades.csv").exists()
+
+
+@pytest.mark.parametrize(("answer", "left"), [("", {"ada", "bob", "cleo"}), (" Yes ", {"ada", "cleo"})])
+def test_whoever_is_asked_decides(class_of_three, monkeypatch, capsys, answer, left):
+    asked = []
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("builtins.input", lambda question: asked.append(question) or answer)
+    assert run(class_of_three, "forget", "bob") == 0
+    assert asked == ["Remove everything of bob? This cannot be undone. [y/N] "]
+    assert ("Nothing was removed." in capsys.readouterr().out) == ("bob" in left)
+    assert points(class_of_three).keys() == left
+
+
+def test_traces_that_another_program_keeps_are_said(class_of_three, monkeypatch, capsys):
+    monkeypatch.setattr("dhlib.grading.batch.store.PATIENCE", 0.05)
+    other = sqlite3.connect(class_of_three / "results.sqlite", isolation_level=None)
+    other.execute("BEGIN")
+    other.execute("SELECT * FROM submission").fetchall()
+    assert run(class_of_three, "forget", "cleo", "--yes") == 2
+    assert "another program has results.sqlite open, so traces may be left in it" in capsys.readouterr().err
+    other.close()
 
 
 def test_forgetting_asks_first(class_of_three):

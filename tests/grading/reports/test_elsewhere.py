@@ -62,6 +62,14 @@ def test_the_scripts_may_be_run_and_stand_at_the_root(unpacked):
     assert "[grade]" in (unpacked / "source" / "setup.sh").read_text("utf-8")
 
 
+def test_an_exercise_of_the_library_is_not_packed_twice():
+    def packed(folder):
+        return zipfile.ZipFile(io.BytesIO(autograder.write("quickshot", folder)[autograder.NAME])).namelist()
+
+    own = {"exercises/quickshot.py", "exercises/quickshot.ipynb"}
+    assert set(packed(ROOT / "exercises")) - set(packed(None)) == own
+
+
 @pytest.mark.notebooks
 @pytest.mark.sandbox
 def test_gradescope_gives_a_solution_all_points(unpacked, tmp_path):

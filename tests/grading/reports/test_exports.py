@@ -6,10 +6,12 @@ import json
 import random
 import re
 import zipfile
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
 
+from dhlib.cli import main
 from dhlib.errors import DHError
 from dhlib.grading.reports import canvas, classroom, gradescope, junit, moodle, nbgrader, whole
 from dhlib.grading.reports.cells import FORMULA, safe, table
@@ -147,9 +149,32 @@ def test_moodle_finds_the_folders_it_made(records):
     assert len(archive.namelist()) == 2
 
 
-def test_moodle_says_what_is_missing(records):
+def test_a_worksheet_without_maximum_and_comments_gets_its_grades(records, tmp_path):
+    worksheet = tmp_path / "Grades.csv"
+    worksheet.write_text("Identifier,Full name,Grade\nParticipant 123,Ada,\nParticipant 999,Else,\n", "utf-8")
+    rows = rows_of(moodle.write(list(records.values()), Wishes(worksheet=worksheet))["moodle-grades.csv"])
+    assert rows[1][:2] == ["Participant 123", "Ada"]
+    assert float(rows[1][2]) == records["123"].points
+    assert rows[2] == ["Participant 999", "Else", ""]
+
+
+def test_moodle_says_what_is_missing(records, tmp_path):
     with pytest.raises(DHError, match="none of these came from Moodle"):
         moodle.write([records["77"]], Wishes())
+    for text in ("", "Name,Points\nAda,3\n"):
+        (tmp_path / "other.csv").write_text(text, "utf-8")
+        with pytest.raises(
+            DHError, match=r"other\.csv has no columns Identifier and Grade: is it the grading worksheet"
+        ):
+            moodle.write(list(records.values()), Wishes(worksheet=tmp_path / "other.csv"))
+
+
+def test_a_part_that_nobody_touched_needs_no_more_words(results):
+    rows = [replace(row, message="") for row in marked({})]
+    results.add(submission("123", "Ada", PEOPLE[0][2], rows), rows)
+    (record,) = read_results(results)
+    said = moodle.write([record], Wishes())["moodle-grades.csv"].decode()
+    assert "A1 (0 of 1): still open.<br>" in said
 
 
 # Canvas: gradebook_importer.rb wants Student, ID, …, Section, and then assignments
@@ -174,6 +199,19 @@ def test_canvas_attaches_what_comes_back(records):
     numbers = [piece for piece in name.split("_") if re.fullmatch(r"\d+", piece)][:2]  # as assignment.rb does
     assert numbers == ["77", "901"]
     assert not name.split("_")[-1].startswith("link")
+
+
+def test_canvas_says_what_is_missing(records, tmp_path):
+    with pytest.raises(DHError, match="none of these came from Canvas: its files are called name_123_456_file"):
+        canvas.write([records["123"]], Wishes())
+    for text, words in (
+        ("", "has no columns Student, ID and Section: is it the exported gradebook"),
+        ("Student,ID\nBorg,77\n", "has no columns Student, ID and Section"),
+        ("Student,ID,Section,Homework (12)\nBorg,77,A,\n", "has no assignment 'Quickshot'; name it with --title"),
+    ):
+        (tmp_path / "book.csv").write_text(text, "utf-8")
+        with pytest.raises(DHError, match=words):
+            canvas.write(list(records.values()), Wishes(title="Quickshot", worksheet=tmp_path / "book.csv"))
 
 
 def test_canvas_takes_names_and_sections_from_its_own_export(records, tmp_path):
@@ -324,6 +362,13 @@ def test_several_exercises_are_refused_where_one_is_wanted(records, results):
     results.add(submission("123", "Ada Müller", source, rows, exercise="planar"), rows)
     with pytest.raises(DHError, match="planar, quickshot"):
         moodle.write(read_results(results), Wishes())
+
+
+def test_an_exercise_without_results_is_said(results, records, capsys):
+    folder = str(results.path.parent)
+    assert main(["export", folder, "--format", "json", "--exercise", "planar"]) == 2
+    assert f"there are no results of planar in {folder}." in capsys.readouterr().err
+    assert main(["export", folder, "--format", "json", "--exercise", "quickshot"]) == 0
 
 
 def test_what_could_not_be_marked_gets_no_grade(records, results):

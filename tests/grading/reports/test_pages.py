@@ -8,15 +8,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from dhlib import Chain, Tx, robots
 from dhlib.errors import DHError
+from dhlib.grading.exercise import Part
+from dhlib.grading.forms import Function, Numbers
 from dhlib.grading.reports.book_links import link, read_address
 from dhlib.grading.reports.class_page import class_page
 from dhlib.grading.reports.decisions import Adjustment, Rule, adjust, set_rule
 from dhlib.grading.reports.feedback import feedback_page
-from dhlib.grading.reports.pages import policy
+from dhlib.grading.reports.pages import brief, policy
 from dhlib.grading.reports.picture import picture
 from dhlib.grading.reports.records import read_results, renamed
-from dhlib.grading.reports.shape import show
+from dhlib.grading.reports.shape import number_text, show
+from dhlib.grading.reports.similarity import fingerprint
+from dhlib.grading.reports.statistics import unusual
 from dhlib.grading.reports.write import page_names
 from dhlib.grading.sections import CHAPTERS
 
@@ -196,6 +201,60 @@ def test_nothing_that_comes_out_of_a_box_breaks_a_page(part_id, reading):
     picture(exercise().part(part_id), reading)
 
 
+@pytest.mark.parametrize(
+    ("reading", "line"),
+    [
+        (None, ""),
+        ({"fault": "missing"}, ""),
+        ({"table": {"rows": [["q1", None, 0.25], [True, 2, "x"]]}}, "q1  0.25  True  2  x"),
+        ({"values": [[-1.5, None]]}, "−1.5"),
+    ],
+)
+def test_an_answer_in_brief_is_a_line(reading, line):
+    assert brief(reading) == line
+
+
+def test_origins_that_are_right_are_shown_where_they_are_asked_for():
+    part = exercise().part("frames")
+    shown = show(part, right("frames"), reveal=True)
+    assert shown.right.headings == ("x in mm", "y in mm", "z in mm")
+    origins = part.chain.frames(np.zeros(4))[:, :3, 3]
+    assert [cell.text for cell in shown.right.rows[4]] == [number_text(x) for x in origins[4]]
+    assert show(part, right("frames")).right is None
+    metres = Part("f", "F", 1, part.asks, arm=Chain(part.chain.joints, "classic"))
+    assert show(metres, right("frames"), reveal=True).right.headings == ("x in m", "y in m", "z in m")
+
+
+def test_values_that_may_differ_and_mean_the_same_are_not_marked():
+    arm = robots.planar(2)
+    asks = Function(lambda arm, x, y: [x, y], shape=(2,), calls=[(0.4, 1.1)], signature="f(x, y)", means=arm.fk)
+    grid = show(Part("f", "F", 1, asks, arm=arm), {"values": [[0.4, 1.1 + 2 * np.pi]]}).answer
+    assert (grid.caption, grid.differing) == ("Your f", 0)
+
+
+def test_a_long_argument_is_left_out_of_the_caption():
+    asks = Function(lambda arm, T, k: k * T[0, 3], shape=(), calls=[(Tx(2.0), 3), (Tx(5.0), 4)], signature="f(T, k)")
+    part = Part("f", "F", 1, asks, arm=robots.planar(2))
+    assert show(part, {"values": [6.0, 21.0]}).answer.caption == (
+        "Your f for f(…, 4) (it differs at 1 of 2 places tried)"
+    )
+
+
+def test_several_matrices_are_shown_below_each_other():
+    asks = Numbers(lambda arm, q: [arm.A(1, q), arm.A(2, q)], shape=(2, 4, 4), at=(0.3, 0.5))
+    part = Part("both", "B", 1, asks, arm=robots.planar(2))
+    values = asks.values(part.chain)
+    values[0, 1, 0, 3] += 5
+    grid = show(part, {"values": values.tolist()}).answer
+    assert [len(row) for row in grid.rows] == [4] * 8
+    assert np.argwhere([[cell.verdict == "differs" for cell in row] for row in grid.rows]).tolist() == [[4, 3]]
+
+
+def test_a_table_is_drawn_as_the_arm_that_it_describes():
+    drawn = picture(exercise().part("table"), right("table"))
+    assert {"x_4", "z_4"} <= {word for label in drawn.labels for word in label.text.split(", ")}
+
+
 def test_frames_are_drawn_beside_the_axes():
     sketch = picture(exercise().part("frames"), right("frames"))
     said = {label.text for label in sketch.labels}
@@ -321,6 +380,25 @@ def test_rare_wrong_answers_are_set_side_by_side(results):
     assert all(each.students == 2 for each in pair.shared)
     assert [{record.student for record in group} for group in same_files(records)] == [{"2", "5"}]
     assert not alike([record for record in records if record.student != "5"])
+
+
+def test_who_is_right_where_most_are_wrong_is_worth_a_look(results):
+    parts = [part.id for part in exercise().parts]
+    easy, hard = parts[:12], parts[12:]
+    for k in range(8):
+        answered = hard[:4] if k == 6 else easy + hard[: k % 2]
+        rows = marked({part: right(part) for part in answered})
+        results.add(submission(str(k), f"S{k}", f"s{k}/x.ipynb", rows), rows)
+    told = {(each.record.student, each.why) for each in unusual(read_results(results))}
+    against = "right where most are wrong, and wrong where most are right"
+    assert [student for student, why in told if why == against] == ["6"]
+
+
+def test_where_a_formula_has_no_value_answers_are_alike():
+    nan = float("nan")
+    one, same, other = ({"values": [[x, 1.25, 2.5, 3.75]]} for x in (nan, nan, 0.5))
+    assert fingerprint(one) == fingerprint(same) != fingerprint(other)
+    assert fingerprint(one).startswith("nan|")
 
 
 def test_the_same_file_says_nothing_if_all_in_it_is_right(results):
