@@ -135,6 +135,14 @@ def test_who_handed_nothing_in_is_counted_and_the_missing_wall_is_said(tmp_path,
     assert UNSAFE in said.err
 
 
+def test_where_no_box_can_be_built_the_run_ends_in_a_sentence(folder, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("PATH", str(tmp_path / "nothing"))
+    assert main(["grade", str(folder), "--out", str(tmp_path / "out"), "--workers", "2"]) == 2
+    said = capsys.readouterr().err
+    assert "need a sandbox" in said
+    assert "Traceback" not in said
+
+
 def test_a_certificate_that_is_not_there_is_named(tmp_path, capsys):
     (tmp_path / "ca.pem").write_text("x")
     command = ["grade", str(tmp_path), "--out", str(tmp_path / "out"), "--scheduler", "tls://example.org:8786"]

@@ -17,10 +17,11 @@ from sampling import FULL
 from dhlib.errors import DHError
 from dhlib.grading.asked import Catalogue
 from dhlib.grading.batch.lock import Lock
+from dhlib.grading.batch.pool import Pool
 from dhlib.grading.batch.run import Shard, grade_class
 from dhlib.grading.batch.store import Certainty, Store
 from dhlib.grading.batch.versions import versions
-from dhlib.grading.batch.work import Grader, Settings, grade
+from dhlib.grading.batch.work import Grader, Settings, Work, grade
 from dhlib.grading.grade import mark, prepare
 from dhlib.grading.wall import Outcome
 
@@ -427,6 +428,23 @@ def test_a_worker_that_dies_is_replaced_and_a_poisonous_notebook_is_given_up(han
     assert status == {f"s{k}": "failed" if k == 3 else "graded" for k in range(8)}
     tried = [student for _, student in log(tmp_path)]
     assert sorted(tried) == sorted([f"s{k}" for k in range(8)] + ["s3"])
+
+
+def test_workers_that_end_as_soon_as_they_start_end_the_run(exercises):
+    works = [Work(k, f"{k}.ipynb", "x", json.dumps(notebook("a")).encode()) for k in range(9)]
+    graded = []
+    with pytest.raises(DHError, match="end as soon as they start"), Pool(Settings(), 1, sys.exit) as pool:
+        graded.extend(pool.grade(works))
+    assert [each.status for each in graded] == ["failed"]
+
+
+def test_a_worker_that_takes_too_long_is_ended_and_its_notebook_given_up(exercises, monkeypatch):
+    monkeypatch.setattr("dhlib.grading.batch.pool.EXTRA_SECONDS", -1e6)
+    work = Work(7, "tiny.ipynb", "x", json.dumps(notebook("a")).encode())
+    with Pool(Settings(exercises=exercises, unsafe=True), 1) as pool:
+        (given_up,) = pool.grade([work])
+    assert (given_up.number, given_up.status) == (7, "failed")
+    assert "The process that graded it ended, 2 times." in given_up.message
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks into /proc")

@@ -8,12 +8,13 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 
 from dhlib.errors import DHError
 from dhlib.grading.notebook import Cell
-from dhlib.grading.wall import Limits, Sandbox, doctor, outer, sandbox, view
+from dhlib.grading.wall import Limits, Sandbox, doctor, outer, plain, sandbox, view
 from dhlib.grading.wall import cells as keeping
 from dhlib.grading.wall.sandbox import HOW, STARVED, descendants
 
@@ -196,17 +197,23 @@ def test_what_says_what_is_right_is_not_in_view(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(package.parent))
     seen = view.view()
     assert {str(package / "_exercises"), f"{view.LIBRARY}/_exercises"} <= set(seen.emptied)
+    command = " ".join(outer.bubblewrap(seen, True))
+    assert all(f" --tmpfs {place} --remount-ro {place} " in command for place in seen.emptied)
     shown = [source for source, _ in seen.shown]
     assert not any(str(path).startswith(os.path.expanduser("~") + "/.ssh") for path in shown)
     assert os.getcwd() not in shown
     assert "/" not in shown
 
 
-@pytest.mark.parametrize("problem", ["missing", "blocked"])
+@pytest.mark.parametrize("problem", ["missing", "blocked", "switched off", "no Linux"])
 def test_a_machine_where_no_wall_can_be_built_refuses(monkeypatch, tmp_path, problem):
-    if problem == "blocked":
+    if problem in ("blocked", "switched off"):
         (tmp_path / "bwrap").write_text("#!/bin/sh\necho 'bwrap: No permissions to create new namespace' >&2; exit 1\n")
         (tmp_path / "bwrap").chmod(0o755)
+    if problem == "switched off":
+        monkeypatch.setattr(outer, "open", lambda *_, **__: io.StringIO("0\n"), raising=False)
+    if problem == "no Linux":
+        monkeypatch.setattr(outer, "sys", SimpleNamespace(platform="darwin"))
     monkeypatch.setenv("PATH", str(tmp_path))
     outer.find_outer.cache_clear()
     try:
@@ -215,9 +222,79 @@ def test_a_machine_where_no_wall_can_be_built_refuses(monkeypatch, tmp_path, pro
     finally:
         monkeypatch.undo()
         outer.find_outer.cache_clear()
-    words = "is not installed" if problem == "missing" else "No permissions to create new namespace"
-    assert words in str(refused.value)
+    words = {
+        "missing": "is not installed",
+        "blocked": "No permissions to create new namespace",
+        "switched off": "User namespaces are switched off: as root, sysctl kernel.unprivileged_userns_clone=1.",
+        "no Linux": "bubblewrap is for Linux: here, run dhlib in a container.",
+    }
+    assert words[problem] in str(refused.value)
     assert "--unsafe-no-sandbox" in str(refused.value)
+
+
+@pytest.mark.parametrize(("said", "words"), [("echo no room >&2", "no room"), (":", "it said nothing")])
+def test_a_box_that_does_not_start_is_said(said, words):
+    behind = Sandbox(unsafe=True)
+    behind._outer = outer.Outer("played", lambda _: ["sh", "-c", f"{said}; exit 1"])
+    with pytest.raises(
+        DHError, match=f"the box for notebooks could not be started: {words}\\. Is dhlib installed with"
+    ):
+        behind.run(cells("A = 1"), REQUESTS)
+
+
+def test_a_notebook_that_is_too_long_to_be_run_is_said(monkeypatch):
+    behind = Sandbox(unsafe=True)
+    behind._outer = outer.Outer("played", lambda _: ["false"])
+    long = f"A = '{'x' * sandbox.LARGEST_JOB}'"
+    assert behind.run(cells(long), REQUESTS).note == "The code of the notebook is too long to be run."
+
+
+@pytest.mark.parametrize(
+    ("release", "count"), [("5.10.0-8-amd64", 4096), ("5.14.0", 0), ("6.1.0-rc1+", 0), ("4.19", 4096), ("odd", 4096)]
+)
+def test_processes_outside_count_where_the_kernel_is_old(monkeypatch, release, count):
+    monkeypatch.setattr(sandbox.os, "uname", lambda: SimpleNamespace(release=release))
+    assert sandbox.processes_that_count() == count
+
+
+def test_a_long_job_is_sent_in_pieces_and_closed_at_its_end():
+    class Kept(io.BytesIO):
+        def close(self):
+            self.sent = self.getvalue()
+            super().close()
+
+    job = os.urandom(2 * sandbox.CHUNK + 3)
+    left, to_box, lengths = memoryview(job), Kept(), []
+    while left:
+        assert not to_box.closed
+        left = sandbox._send_some(left, to_box)
+        lengths.append(len(left))
+    assert lengths == [sandbox.CHUNK + 3, 3, 0]
+    assert to_box.closed
+    assert to_box.sent == job
+
+
+# Without walls, in a box that is played
+
+
+@pytest.mark.parametrize(
+    ("lines", "note", "killers", "readings"),
+    [
+        ([], "No Python with IPython could be started for it: install dhlib[grade].", {}, {}),
+        ([{"begin": 0}], "The notebook ended its own program.", {0: "ended the program"}, {}),
+        ([{"end": 0}], "The notebook ended its own program.", {}, {}),
+        ([3, [], "{", {"x": 1}, {"part": "A", "reading": {}}, {"done": True}], "", {}, {"A": {}}),
+    ],
+    ids=["no Python", "ends in a cell", "ends between cells", "says more than messages"],
+)
+def test_what_a_box_without_walls_says_is_heeded(no_walls, monkeypatch, tmp_path, lines, note, killers, readings):
+    said = "".join(f"{line if isinstance(line, str) else json.dumps(line)}\n" for line in lines)
+    played = tmp_path / "python"
+    played.write_text(f"#!/bin/sh\ncat <<'END'\n{said}END\n")
+    played.chmod(0o755)
+    monkeypatch.setattr(plain, "sys", SimpleNamespace(executable=str(played)))
+    outcome = no_walls.run(cells("A = 1"), REQUESTS)
+    assert (outcome.note, outcome.killers, outcome.readings) == (note, killers, readings)
 
 
 def test_whatever_a_keeper_meets_costs_its_notebook_and_not_the_class(monkeypatch):

@@ -127,6 +127,16 @@ def test_a_group_that_the_box_is_not_in_bounds_nothing(machine):
     assert (group.memory, group.processes) == (False, False)
 
 
+def test_a_group_that_cannot_be_removed_is_left_behind(machine, monkeypatch):
+    monkeypatch.setattr(cgroup, "REMOVE_SECONDS", 0.03)
+    machine(["memory", "pids"], "/a.slice/b.scope")
+    group = ControlGroup(LIMITS)
+    (folder,) = group.folders
+    group.close()  # its files are in it, as processes that have not ended would be
+    assert folder.is_dir()
+    assert group.entrances == []
+
+
 @pytest.mark.sandbox
 def test_a_box_that_could_not_go_into_its_group_is_watched(walls, monkeypatch):
     monkeypatch.setattr(ControlGroup, "entrances", ["/proc/nowhere"])

@@ -12,12 +12,15 @@ import pytest
 from sampling import FULL
 
 from dhlib.errors import DHError
-from dhlib.grading.batch.cluster import Certificates, Cluster, check_address, job_of
+from dhlib.grading.batch import cluster
+from dhlib.grading.batch.cluster import Certificates, Cluster, check_address, job_of, run_in_box
 from dhlib.grading.batch.pool import Pool
 from dhlib.grading.batch.run import grade_class
 from dhlib.grading.batch.store import Store
 from dhlib.grading.batch.work import Grader, Settings, Work
 from dhlib.grading.wall import Limits
+
+from .conftest import walls_or_skip
 
 EXERCISE = """
 from dhlib import robots
@@ -176,6 +179,33 @@ def test_a_notebook_that_kills_workers_is_given_up(local, exercises, monkeypatch
     assert graded[0].status == "graded"
     assert graded[1].status == "failed"
     assert "2 times" in graded[1].message
+
+
+@pytest.mark.sandbox
+def test_a_worker_of_the_cluster_keeps_its_box_for_notebooks_of_the_same_limits(exercises):
+    walls_or_skip()
+    work = Work(0, "tiny.ipynb", "x", notebook("'a'", "'b'").encode())
+    prepared = Grader(Settings(exercises=exercises)).prepare(work)
+    jobs = [json.loads(json.dumps(job_of(prepared, Limits.of(seconds)))) for seconds in (60, 60, 90)]
+    done, boxes = [], []
+
+    def work_through():
+        for job in jobs:
+            done.append(run_in_box(job)["readings"])
+            boxes.append(cluster._here.sandbox)
+        boxes[-1].close()
+
+    worker = threading.Thread(target=work_through)
+    worker.start()
+    worker.join()
+    assert done == [{"p": {"choice": "a"}, "q": {"choice": "b"}}] * 3
+    assert boxes[0] is boxes[1] is not boxes[2]
+    assert boxes[0]._box is None
+
+
+def test_a_worker_of_the_cluster_with_another_dhlib_refuses():
+    with pytest.raises(DHError, match=r"it has dhlib \S+, and here it is 0\.0\.1\."):
+        run_in_box({"dhlib": "0.0.1"})
 
 
 def test_messages_name_nobody(exercises):

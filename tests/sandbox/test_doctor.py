@@ -2,12 +2,13 @@
 
 import io
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 from dhlib.cli import main
 from dhlib.errors import DHError
-from dhlib.grading.wall import Limits, Sandbox, doctor
+from dhlib.grading.wall import Limits, Outcome, Sandbox, doctor
 
 #: Probes that change nothing on this machine where no wall stops them. The others would take memory and processes.
 HARMLESS_WITHOUT_WALLS = (
@@ -56,6 +57,53 @@ def test_what_only_ran_out_of_time_or_met_no_limit_is_not_called_stopped(walls, 
     assert found["processes are bounded"] == (False, "it came through ({'values': [1.0]})")
     assert found["slow"] == (False, doctor.LATE)
     assert found["time"] == (True, "")
+
+
+class Played:
+    """A sandbox that gives every notebook the same answer, after some time."""
+
+    walls = "played"
+
+    def __init__(self, answer, seconds=0.0):
+        self.answer, self.seconds, self.now = answer, seconds, 0.0
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def run(self, cells, requests):
+        self.now += self.seconds
+        return Outcome({"A": {"values": [self.answer]}})
+
+    def extras(self):
+        return [("Landlock", False, "mounts alone keep files apart")]
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (7.0, "✘ an honest cell does not run: {'A': {'values': [7.0]}}\n"),
+        (2.0, "✘ A wall does not hold: do not grade strangers' notebooks here, and report this, please.\n"),
+    ],
+)
+def test_a_wall_that_does_not_hold_is_said_at_the_end(monkeypatch, answer, words):
+    monkeypatch.setattr(doctor, "Sandbox", lambda _: Played(answer))
+    out = io.StringIO()
+    assert doctor.look(out) is False
+    assert out.getvalue().endswith(words)
+    assert "may be graded here" not in out.getvalue()
+    if answer == 2.0:
+        assert "– Landlock: mounts alone keep files apart" in out.getvalue()
+
+
+def test_what_takes_longer_than_it_may_is_not_called_stopped(monkeypatch):
+    slow = Played(0.0, seconds=doctor.LIMITS.notebook_seconds + 2)
+    monkeypatch.setattr(doctor, "time", SimpleNamespace(monotonic=lambda: slow.now))
+    monkeypatch.setattr(doctor, "PROBES", doctor.PROBES[:1])
+    (_, held, says), _ = doctor.probe(slow)
+    assert (held, says) == (False, f"it took {slow.seconds:.1f} s")
 
 
 def test_a_machine_without_walls_is_told_what_to_install(monkeypatch):

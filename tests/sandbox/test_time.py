@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from dhlib.errors import DHError
 from dhlib.grading.notebook import Cell
 from dhlib.grading.wall import Limits, sandbox
 from dhlib.grading.wall.sandbox import BROKEN, STOPPED, Crashed, Run
@@ -72,6 +73,21 @@ def test_a_box_that_does_not_obey_is_given_up(monkeypatch, says):
         played.converse()
     assert played.run.outcome.note == TOLD
     assert played.now <= LATEST
+
+
+def test_a_box_that_ends_another_notebook_is_given_up(monkeypatch):
+    played = Played(monkeypatch, obeys=True)
+    played.box.jobs = 2
+    with pytest.raises(Crashed):
+        played.converse()
+
+
+def test_a_box_that_cannot_be_set_up_ends_the_class_in_a_sentence(monkeypatch):
+    played = Played(monkeypatch)
+    os.write(played.notices, b'{"what": 3}\n{"done": true}\n{"failed": "no room"}\n')
+    with pytest.raises(DHError, match="a box for the notebook could not be set up: no room"):
+        played.run._hear(played.run.notices)
+    assert played.run.finished
 
 
 def test_more_patience_would_be_too_late(monkeypatch):
