@@ -190,6 +190,14 @@ while not pathlib.Path("{there}.txt").exists():
 """
 
 
+def test_a_line_that_is_printed_in_pieces_is_one_line(copy: Path) -> None:
+    pieces = "import sys\nimport time\n\nprint('one', end=' ')\nsys.stdout.flush()\ntime.sleep(0.5)\nprint('two')"
+    add_page(copy, f"```{{code-cell}}\n{pieces}\n```\n")
+    built = build_book(copy, copy, environment={"PYTHONPATH": str(copy)})
+    assert built.returncode == 0, built.stdout
+    assert "one two" in (copy / "_build/html/book/page.html").read_text("utf-8")
+
+
 def test_chapters_run_side_by_side(copy: Path) -> None:
     """Each of two chapters waits until the other has begun: one after the other they would never end."""
     add_page(copy, MEETING.format(here="page", there="second"))
