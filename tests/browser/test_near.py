@@ -97,7 +97,8 @@ LATE = """
 const Observer = IntersectionObserver;
 window.IntersectionObserver = class extends Observer {
     constructor(act, options) {
-        super((entries, self) => act([{ target: entries[0].target, isIntersecting: false }, ...entries], self), options);
+        const before = (target) => ({ target, isIntersecting: false });
+        super((entries, self) => act([before(entries[0].target), ...entries], self), options);
     }
 };
 """
