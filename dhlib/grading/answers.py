@@ -192,8 +192,6 @@ def _read_table(request: Request, value: Any) -> Reading:
     rows = _as_nested(value, 2)
     if not isinstance(rows, list):
         raise _Fault("no_table", type=_name(value))
-    if len(rows) > MOST_ENTRIES or any(isinstance(row, list) and len(row) > MOST_ENTRIES for row in rows):
-        raise _Fault("size")
     cells = [[_cell(cell) for cell in row] if isinstance(row, list) else [_cell(row)] for row in rows]
     return {"table": {"rows": cells, "columns": columns}}
 
