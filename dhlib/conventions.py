@@ -136,4 +136,6 @@ def read_convention(convention: object) -> str:
     """Return the name of a convention, refusing any other."""
     if convention in CONVENTIONS:
         return str(convention)
+    if convention in ("", None):
+        raise DHError("convention='classic' or convention='modified' is needed: a table alone does not say which.")
     raise DHError(f"convention={convention!r} is unknown; it should be 'classic' or 'modified'.")

@@ -547,7 +547,9 @@ class _Canvas:
         """An axis that points at the reader: a ring with a dot; away from the reader: a ring with a cross."""
         x, y = at
         ring = f'<circle class="ring" cx="{_number(x)}" cy="{_number(y)}" r="6"/>'
-        if not toward:
+        if toward:
+            ring += f'<circle class="h" cx="{_number(x)}" cy="{_number(y)}" r="2.2"/>'
+        else:
             ring += f'<path d="M{_xy(at - 4.2)}l8.4 8.4M{_xy(at + [4.2, -4.2])}l-8.4 8.4"/>'
         self.stroke(6, depth, f'<g class="{arrow.colour}">{ring}</g>')
         self.keep_free(np.array([[x - 6, y], [x + 6, y]]), 12)

@@ -186,7 +186,7 @@ def _read_table(request: Request, value: Any) -> Reading:
     if isinstance(value, dict):
         columns = [_text(name) for name in list(value)[: 2 * DEEPEST]]
         listed = [_as_nested(column, 1) for column in value.values()]
-        if len({len(column) if isinstance(column, list) else -1 for column in listed}) != 1 or listed[0] == -1:
+        if not all(isinstance(column, list) for column in listed) or len(set(map(len, listed))) != 1:
             raise _Fault("ragged")
         value = list(zip(*listed, strict=True))
     rows = _as_nested(value, 2)

@@ -21,7 +21,7 @@ from dhlib.grading.forms import Choice, Formula, Frames, Numbers, ReasonedChoice
 from dhlib.grading.frames import judge_frames
 from dhlib.grading.marks import COARSE, FOLLOWS, NEARLY, OPEN, REASONED, RIGHT, UNREADABLE, WRONG, Mark, make_mark
 from dhlib.grading.misconceptions import KNOWN, name_one, would_have_given
-from dhlib.grading.poses import describe, improper, listed
+from dhlib.grading.poses import MOST, describe, improper, listed
 from dhlib.grading.sentences import begun
 from dhlib.grading.tables import judge_table
 from dhlib.grading.terms import slip_in_a_term
@@ -273,7 +273,7 @@ def agree(values: FloatArray, right: FloatArray, tolerances: FloatArray) -> bool
     A right formula may have none at a few points, such as tan(θ/2) at half turns.
     """
     there = np.isfinite(values).reshape(len(values), -1).all(axis=1)
-    if there.sum() < max(1, 0.7 * len(values)):
+    if there.sum() < max(1, MOST * len(values)):
         return False
     return bool(np.all(np.abs(values - right)[there] <= np.broadcast_to(tolerances, values.shape)[there]))
 

@@ -11,6 +11,8 @@ from dhlib.scalars import FloatArray
 COLUMNS = ("n", "o", "a", "p")
 #: Entries rounded to three decimals still make a rotation to this.
 ROUNDED = 5e-3
+#: A right formula has values at so many of the joint angles tried: tan(θ/2) has none at half turns.
+MOST = 0.7
 
 
 def improper(poses: FloatArray) -> str:
@@ -47,6 +49,14 @@ def improper(poses: FloatArray) -> str:
 def describe(asks: Valued, values: FloatArray, right: FloatArray, unit: str) -> str:
     """Say the first thing that is wrong with values, without the right ones."""
     tolerances = asks.tolerances
+    if isinstance(asks, Formula):
+        there = np.isfinite(values).reshape(len(values), -1).all(axis=1)
+        if there.sum() < max(1, MOST * len(values)):
+            return (
+                f"This has no value at {np.sum(~there)} of the {len(values)} sets of joint angles tried. "
+                "Does it divide by something that may be 0, or take the root of something negative?"
+            )
+        values, right = values[there], right[there]
     off = np.where(np.isfinite(values), np.abs(values - right), np.inf) > tolerances
     if isinstance(asks, Formula) and np.all(np.ptp(values, axis=0) == 0) and np.any(np.ptp(right, axis=0) > 0):
         return f"This holds no joint angle: leave {', '.join(asks.symbols)} as symbols."

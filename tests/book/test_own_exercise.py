@@ -109,6 +109,7 @@ def test_a_joint_without_a_place_stands_where_the_one_before_does(tmp_path: Path
         ("<robot/>", "one link should be the root"),
         ('<robot><joint name="j" type="fixed"/></robot>', "'j' has no parent"),
         (URDF.replace('"0 0 0.3"', '"0 0"'), "should be three numbers"),
+        (URDF.replace('child link="hand"', 'child link="l1"'), "lead in a circle, back to the link 'l1'"),
         (URDF.replace("revolute", "fixed").replace("continuous", "fixed").replace("prismatic", "fixed"), "no joint"),
     ],
 )

@@ -47,6 +47,7 @@ Q = [0.1] * 6
         (lambda: Revolute(limits=3), "two numbers"),
         (lambda: Chain([Revolute()], "proximal"), "'classic' or 'modified'"),
         (lambda: Chain([Revolute()]), "needs convention="),
+        (lambda: Chain.from_table([[0, 1, 2, 3]], joints="R"), "is needed: a table alone does not say which"),
         (lambda: Chain([], "classic"), "at least one joint"),
         (lambda: Chain([[0, 0, 0, 0]], "classic"), "joint 1 is"),
         (lambda: Chain(3, "classic"), "should be a list"),

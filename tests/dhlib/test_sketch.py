@@ -221,7 +221,7 @@ def test_coincident_axes_of_one_letter_share_an_arrow_and_of_two_stand_side_by_s
     assert 2 < np.hypot(x1 - x0, y1 - y0) < 5
 
 
-def test_an_axis_towards_the_reader_is_a_ring() -> None:
+def test_an_axis_that_is_seen_end_on_is_a_ring() -> None:
     scene = Scene()
     scene.add_frame(np.eye(4), "0")
     assert 'class="ring"' in scene.svg(view=(0, 0))
@@ -229,12 +229,12 @@ def test_an_axis_towards_the_reader_is_a_ring() -> None:
     assert 'class="z' in scene.svg(view=(0, 90))
 
 
-def test_an_axis_away_from_the_reader_is_a_ring_with_a_cross() -> None:
+def test_the_ring_holds_a_dot_towards_the_reader_and_a_cross_away_from_the_reader() -> None:
     scene = Scene()
     scene.add_frame(np.eye(4), "0")
     towards, away = (scene.svg(view=view).split('class="ring"')[1].split("</g>")[0] for view in ((0, 0), (180, 0)))
-    assert "<path" not in towards
-    assert away.count("<path") == 1
+    assert (towards.count("<circle"), towards.count("<path")) == (1, 0)
+    assert (away.count("<circle"), away.count("<path")) == (0, 1)
 
 
 def test_a_length_along_the_line_of_sight_is_lettered_beside_its_end() -> None:

@@ -110,6 +110,8 @@ def test_one_number(value):
         (TABLE, [[..., 0, 0, 0]], "missing"),
         (TABLE, [[float("nan"), 0, 0, 0]], "nan"),
         (TABLE, {"theta": [0, 1], "d": [0]}, "ragged"),
+        (TABLE, {"theta": 0, "d": 1}, "ragged"),
+        (TABLE, {"theta": [0], "d": 1}, "ragged"),
         (TABLE, [[0, 0, 0, 0]] * 1000, "size"),
         (TABLE, [[0] * 1000], "size"),
     ],

@@ -293,7 +293,18 @@ def test_a_formula_may_lack_a_value_at_a_few_points_only(exercise, lost, right):
     values = part.asks.values(part.chain).tolist()
     assert len(values) == 24
     values[:lost] = [[[None] * 4] * 4] * lost
-    assert mark(part, {"values": values}).passed == right
+    got = mark(part, {"values": values})
+    assert got.passed == right
+    assert (f"no value at {lost} of the 24 sets" in got.message) == (not right)
+
+
+def test_of_a_formula_without_a_value_here_and_there_the_others_are_looked_at(exercise):
+    part = exercise.part("A1_sym")
+    values = part.asks.values(part.chain).copy()
+    values[:, 1, 3] += 7
+    listed = values.tolist()
+    listed[:2] = [[[None] * 4] * 4] * 2
+    assert mark(part, {"values": listed}).message == mark(part, {"values": values.tolist()}).message
 
 
 def test_a_part_that_is_not_there_is_told_which_are(exercise):

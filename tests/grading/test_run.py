@@ -396,6 +396,17 @@ def test_two_graders_on_one_folder(hand_in, run, tmp_path):
     assert run()[0] == ["bob"]
 
 
+@pytest.mark.parametrize(
+    "fill", [lambda file: file.mkdir(), lambda file: file.write_text("no database " * 99, "utf-8")]
+)
+def test_a_folder_that_cannot_be_locked_is_named(hand_in, run, tmp_path, fill):
+    hand_in("ada/tiny.ipynb", "a")
+    (tmp_path / "out").mkdir()
+    fill(tmp_path / "out" / "results.lock")
+    with pytest.raises(DHError, match=r"results\.lock cannot be written to"):
+        run()
+
+
 def command(tmp_path, workers, *more):
     return [
         sys.executable,

@@ -19,17 +19,18 @@ class Lock:
     Raises
     ------
     DHError
-        If another grader holds it.
+        If another grader holds it, or the folder cannot be written to.
     """
 
     def __init__(self, folder: Path) -> None:
-        self._db = sqlite3.connect(folder / FILE, timeout=0, isolation_level=None)
+        self._db: sqlite3.Connection | None = None
         try:
+            self._db = sqlite3.connect(folder / FILE, timeout=0, isolation_level=None)
             self._db.execute("BEGIN EXCLUSIVE")
-        except sqlite3.OperationalError as error:
-            self._db.close()
+        except sqlite3.Error as error:
+            self.__exit__()
             if error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY:
-                raise DHError(f"{folder} cannot be written to: {error}.") from None
+                raise DHError(f"{folder / FILE} cannot be written to: {error}.") from None
             raise DHError(
                 f"another grader is filling {folder}; wait until it is done, or name another folder with --out."
             ) from None
@@ -38,4 +39,5 @@ class Lock:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._db.close()
+        if self._db is not None:
+            self._db.close()

@@ -91,8 +91,11 @@ def _of_urdf(text: str, path: Path, convention: str) -> Chain:
         raise DHError(f"{path}: one link should be the root; there are {len(starts)}.")
     here: FloatArray = np.eye(4)
     axes = []
-    link = starts[0]
+    link, passed = starts[0], set()
     while link in joints:
+        if link in passed:
+            raise DHError(f"{path} is no serial arm: its joints lead in a circle, back to the link {link!r}.")
+        passed.add(link)
         branches = joints[link]
         moving = [branch for branch in branches if branch[0].get("type") in MOVING]
         joint, link = (moving or branches)[0]

@@ -29,7 +29,7 @@ def write(records: Sequence[Record], wishes: Wishes) -> Files:
     records = known(records)
     exercise = one_exercise(records, "a column of the gradebook")
     seats = {record.submission.id: canvas_seat(record.submission) for record in records}
-    if not any(seats.values()) and not wishes.worksheet:
+    if not any(seats.values()):
         raise DHError(
             "none of these came from Canvas: its files are called name_123_456_file.ipynb, and the first number is "
             "what Canvas knows a student by. Grade the zip as Canvas gave it."

@@ -18,6 +18,8 @@ from dhlib.grading.reports.write import CLASS, EXPORTS, FEEDBACK, GRADES, write_
 PROBLEMS = "problems.csv"
 #: Names that are shorter stand in many a file by chance.
 SHORTEST = 4
+#: Set from when rows are deleted until their bytes are gone.
+_TRACES = "traces of a student may be left"
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,8 @@ def forget(store: Store, student: str) -> Forgotten:
     Raises
     ------
     DHError
-        If somebody else uses the file, or it cannot be written.
+        If the file cannot be written; or if another program has it open, so that it still holds the bytes of what was
+        deleted, and `clean` has to be called again.
     """
     folder = store.path.parent
     rows = store.query("SELECT id, name, source, place FROM submission WHERE student = ?", (student,))
@@ -63,8 +66,8 @@ def forget(store: Store, student: str) -> Forgotten:
         for row in db.execute("SELECT id, details FROM event").fetchall():
             if any(names(row["details"])):
                 db.execute("DELETE FROM event WHERE id = ?", (row["id"],))
+        db.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", (_TRACES, "yes"))
     store.log("forgotten", details=f"one student, {len(rows)} submissions")
-    _clean(store)
     exports = folder / EXPORTS
     had_exports = exports.is_dir()
     if had_exports:
@@ -74,13 +77,22 @@ def forget(store: Store, student: str) -> Forgotten:
     words = [text for text in said if len(text) >= SHORTEST]
     if folder / PROBLEMS in leftovers(folder, sorted(said)):
         (folder / PROBLEMS).unlink()
+    clean(store)
     ours = (store.path.name, GRADES, CLASS, FEEDBACK)
     left = [path for path in leftovers(folder, words) if not path.relative_to(folder).parts[0].startswith(ours)]
     return Forgotten(len(rows), had_exports, left)
 
 
-def _clean(store: Store) -> None:
-    """Write the file anew without what was deleted, and empty the log beside it."""
+def clean(store: Store) -> bool:
+    """Write the file anew without what was deleted, and empty the log beside it; False if nothing was left to do.
+
+    Raises
+    ------
+    DHError
+        If another program has the file open.
+    """
+    if not store.meta(_TRACES):
+        return False
     try:
         store.query("VACUUM")
         busy = store.query("PRAGMA wal_checkpoint(TRUNCATE)")[0][0]
@@ -88,8 +100,11 @@ def _clean(store: Store) -> None:
         raise DHError(f"{store.path} cannot be cleaned: {error}.") from None
     if busy:
         raise DHError(
-            f"another program has {store.path.name} open, so traces may be left in it: end it, and forget again."
+            f"{store.path.name} was cleared of the student, but another program has it open, so traces may be left in "
+            "its bytes: end that program, and give the same command again."
         )
+    store.set_meta(_TRACES, "")
+    return True
 
 
 def leftovers(folder: Path, words: list[str]) -> list[Path]:

@@ -354,8 +354,14 @@ def test_traces_that_another_program_keeps_are_said(class_of_three, monkeypatch,
     other.execute("BEGIN")
     other.execute("SELECT * FROM submission").fetchall()
     assert run(class_of_three, "forget", "cleo", "--yes") == 2
-    assert "another program has results.sqlite open, so traces may be left in it" in capsys.readouterr().err
+    assert "another program has it open, so traces may be left in its bytes" in capsys.readouterr().err
+    assert "cleo" not in (class_of_three / "grades.csv").read_text("utf-8")
     other.close()
+    assert run(class_of_three, "forget", "cleo", "--yes") == 0
+    assert "is gone now" in capsys.readouterr().out
+    assert not leftovers(class_of_three, ["cleo", "Cleopatra"])
+    assert run(class_of_three, "forget", "cleo", "--yes") == 2
+    assert "cleo" in capsys.readouterr().err
 
 
 def test_forgetting_asks_first(class_of_three):

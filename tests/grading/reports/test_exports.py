@@ -202,8 +202,10 @@ def test_canvas_attaches_what_comes_back(records):
 
 
 def test_canvas_says_what_is_missing(records, tmp_path):
-    with pytest.raises(DHError, match="none of these came from Canvas: its files are called name_123_456_file"):
-        canvas.write([records["123"]], Wishes())
+    (tmp_path / "book.csv").write_text("Student,ID,Section,Quickshot\nBorg,77,A,\n", "utf-8")
+    for wishes in (Wishes(), Wishes(title="Quickshot", worksheet=tmp_path / "book.csv")):
+        with pytest.raises(DHError, match="none of these came from Canvas: its files are called name_123_456_file"):
+            canvas.write([records["123"]], wishes)
     for text, words in (
         ("", "has no columns Student, ID and Section: is it the exported gradebook"),
         ("Student,ID\nBorg,77\n", "has no columns Student, ID and Section"),
