@@ -131,14 +131,6 @@ def cases(exercise: Exercise, solved: dict[str, Any]) -> Iterator[Case]:
             yield Case(part, dress, frozenset(), mark(part, reading))
 
 
-def diagnose(exercise: Exercise, solved: dict[str, Any]) -> Tally:
-    """Tally all that is tried with one exercise; see `cases`."""
-    tally = Tally(len(exercise.parts))
-    for case in cases(exercise, solved):
-        setattr(tally, case.how, getattr(tally, case.how) + 1)
-    return tally
-
-
 # Wrong answers
 
 
