@@ -7,14 +7,16 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from dhlib.errors import DHError
 from dhlib.grading.notebook import Cell
-from dhlib.grading.wall import Limits, Sandbox, doctor, outer, plain, sandbox, view
+from dhlib.grading.wall import Limits, Sandbox, doctor, inner, outer, plain, sandbox, view
 from dhlib.grading.wall import cells as keeping
 from dhlib.grading.wall.sandbox import HOW, STARVED, descendants
 
@@ -75,7 +77,8 @@ def test_a_box_imports_what_a_notebook_needs_before_its_time_begins(name):
 def test_what_is_needed_in_other_words_is_imported_within_the_time():
     hidden = "A = float(__import__('sym' + 'py').sqrt(4)) + __import__('matp' + 'lotlib').cm.viridis(0.0)[3]"
     with Sandbox(Limits(60.0, 120.0)) as sandbox_:
-        assert value(sandbox_.run(cells(hidden), REQUESTS)) == [3.0]
+        outcome = sandbox_.run(cells(hidden), REQUESTS)
+        assert value(outcome) == [3.0], outcome
         assert sandbox_._box.warmed == set()
 
 
@@ -196,13 +199,29 @@ def test_what_says_what_is_right_is_not_in_view(tmp_path, monkeypatch):
     monkeypatch.setattr(view.dhlib, "__file__", str(package / "__init__.py"))
     monkeypatch.syspath_prepend(str(package.parent))
     seen = view.view()
-    assert {str(package / "_exercises"), f"{view.LIBRARY}/_exercises"} <= set(seen.emptied)
+    hidden = str(package / "_exercises")
+    assert {hidden, view._place(hidden), f"{view.LIBRARY}/_exercises"} <= set(seen.emptied)
     command = " ".join(outer.bubblewrap(seen, True))
     assert all(f" --tmpfs {place} --remount-ro {place} " in command for place in seen.emptied)
     shown = [source for source, _ in seen.shown]
     assert not any(str(path).startswith(os.path.expanduser("~") + "/.ssh") for path in shown)
     assert os.getcwd() not in shown
     assert "/" not in shown
+
+
+@pytest.mark.sandbox
+def test_libraries_below_the_folder_of_the_notebook_can_be_imported_late(monkeypatch):
+    with tempfile.TemporaryDirectory(dir=inner.HOME) as folder:
+        packages = Path(folder, "site-packages")
+        packages.mkdir(mode=0o755)
+        Path(folder).chmod(0o755)
+        (packages / "lately.py").write_text("VALUE = 3.0", "utf-8")
+        monkeypatch.syspath_prepend(str(packages))
+        with Sandbox() as sandbox_:
+            outcome = sandbox_.run(cells("import lately; A = lately.VALUE"), REQUESTS)
+            assert value(outcome) == [3.0], outcome
+            hidden = f"import os; A = float(os.path.exists({str(packages)!r}))"
+            assert value(sandbox_.run(cells(hidden), REQUESTS)) == [0.0]
 
 
 @pytest.mark.parametrize("problem", ["missing", "blocked", "switched off", "no Linux"])

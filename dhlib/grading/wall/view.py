@@ -13,9 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import dhlib
+from dhlib.grading.wall.inner import HOME
 
 #: Where dhlib stands behind the wall, wherever it stands outside.
 LIBRARY = "/dhlib/dhlib"
+#: Where libraries stand behind the wall that stand in the folder which is the notebook's own there.
+MOVED = "/moved"
 SYSTEM = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/etc/ld.so.cache")
 DEVICES = ("null", "zero", "full", "random", "urandom")
 #: Parts of dhlib that say what is right.
@@ -37,18 +40,29 @@ def view() -> View:
     python = os.path.realpath(sys.executable)
     package = Path(dhlib.__file__).resolve().parent
     folders = [folder for folder in _folders() if os.path.isdir(folder)]
-    shown = [(folder, folder) for folder in _outermost([*SYSTEM, *folders]) if os.path.exists(folder)]
+    shown = [
+        (folder, place)
+        for folder in _outermost([*SYSTEM, *folders])
+        if os.path.exists(folder)
+        for place in sorted({folder, _place(folder)})  # an interpreter starts from where it was built for
+    ]
     shown.append((python, python))
     shown.append((str(package), LIBRARY))
     keys = [
-        str(found)
+        place
         for folder in folders
         for name in HIDDEN
         for pattern in (f"dhlib/{name}", f"*-packages/dhlib/{name}", f"python3*/*-packages/dhlib/{name}")
         for found in Path(folder).glob(pattern)
+        for place in (str(found), _place(str(found)))
     ]
     keys += [f"{LIBRARY}/{name}" for name in HIDDEN if (package / name).is_dir()]
-    return View(shown, sorted(set(keys)), python, [str(Path(LIBRARY).parent), *_search_path()])
+    return View(shown, sorted(set(keys)), python, [str(Path(LIBRARY).parent), *map(_place, _search_path())])
+
+
+def _place(path: str) -> str:
+    """Where a path is seen when a notebook runs: its own folder hides what was there."""
+    return f"{MOVED}{path}" if path.startswith(f"{HOME}/") else path
 
 
 def _search_path() -> list[str]:
