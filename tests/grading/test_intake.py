@@ -186,10 +186,10 @@ def test_hidden_and_spare_files_are_left_out(class_):
         "bob/env/pyvenv.cfg",
     )
     assert list(who(folder)) == ["ada/quickshot.ipynb", "bob/quickshot.ipynb"]
-    spare = ("__MACOSX/._quickshot.ipynb", ".ipynb_checkpoints/quickshot.ipynb", "work/quickshot.ipynb")
+    spare = ("__MACOSX/._quickshot.ipynb", ".ipynb_checkpoints/quickshot.ipynb", "term/quickshot.ipynb")
     (folder / "carl").mkdir()
-    packed(dict.fromkeys(spare, NOTEBOOK), folder / "carl" / "work.zip")
-    assert list(who(folder))[2:] == ["carl/work.zip/work/quickshot.ipynb"]
+    packed(dict.fromkeys(spare, NOTEBOOK), folder / "carl" / "term.zip")
+    assert list(who(folder))[2:] == ["carl/term.zip/term/quickshot.ipynb"]
 
 
 def test_whoever_handed_in_something_else_is_not_lost(class_):
